@@ -49,6 +49,10 @@ void require_named_instruction_set() {
 
 } // namespace
 
+void warn(const std::string& sentence) {
+    std::fprintf(stderr, "warning: %s\n", one_line(sentence).c_str());
+}
+
 int run_program(const std::string& name, const std::string& description,
                 const std::function<void(Program&)>& set_up, int argc, char** argv) {
     clean_up_when_interrupted();

@@ -12,3 +12,6 @@
 /// @pre the program has no other threads yet
 int run_program(const std::string& name, const std::string& description,
                 const std::function<void(Program&)>& set_up, int argc, char** argv);
+
+/// Prints a sentence on standard error that ends nothing.
+void warn(const std::string& sentence);

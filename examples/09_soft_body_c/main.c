@@ -5,8 +5,9 @@
 
 #include <stdio.h>
 
-#define FRAME_COUNT 240
-#define MEASURED_COUNT 48
+#define FRAME_COUNT 120
+#define CLOTH_DENSITY 0.125 // kg/m^2
+#define MEASURED_COUNT 12
 
 static echinus_status fill_ball(echinus_tetrahedra** organ) {
     echinus_tetrahedralize_options options;
@@ -33,20 +34,16 @@ static echinus_status make_organ(const echinus_tetrahedra* organ, echinus_deform
     return echinus_deformable_soft_body(organ, &options, body);
 }
 
-static echinus_status make_cloth(double mass, echinus_deformable** cloth) {
+static echinus_status make_cloth(echinus_deformable** cloth) {
     echinus_cloth_options options;
-    echinus_deformable* unit = NULL;
-    echinus_status status;
     echinus_cloth_options_init(&options, sizeof options);
     options.column_count = options.row_count = 20;
     options.width = options.height = 0.4;
     options.pose.translation[2] = 0.22;
-    status = echinus_deformable_cloth(&options, &unit); // its particles have the mass 1
-    if (!status) status = echinus_deformable_with_masses_times(unit, mass / (20 * 20), cloth);
-    echinus_deformable_destroy(unit);
-    return status;
+    return echinus_deformable_cloth(&options, cloth);
 }
 
+/// A body has its masses itself; a cloth weighs CLOTH_DENSITY for each square metre.
 static echinus_status weigh(const echinus_deformable* deformable, double* weight) {
     echinus_deformable_arrays arrays = {.size = sizeof arrays};
     const echinus_status status = echinus_deformable_read(deformable, &arrays);
@@ -61,11 +58,8 @@ static echinus_status drop(const echinus_deformable* deformable, const echinus_m
     echinus_simulation* simulation = NULL;
     echinus_status status;
     echinus_simulation_options_init(&options, sizeof options);
-    options.solver = ECHINUS_SOLVER_XPBD;
-    options.iteration_count = 1;
-    options.substep_count = 10;
-    options.drag = 0.01;
-    options.surface_collision = options.self_collision = options.measure_loads = 1;
+    options.density = CLOTH_DENSITY;
+    options.surface_collision = options.self_collision = 1;
     echinus_collider_init(&collider, sizeof collider, dish);
     status = echinus_simulation_create(deformable, &collider, 1, &options, &simulation);
     *borne = 0;
@@ -90,14 +84,15 @@ int main(int argc, char** argv) {
 
     if (!status) status = echinus_tetrahedra_inspect(organ, &report);
     if (!status) status = make_organ(organ, &body);
-    if (!status) status = make_cloth(0.02, &cloth);
+    if (!status) status = make_cloth(&cloth);
     if (!status) {
         const echinus_deformable* const parts[2] = {body, cloth};
         status = echinus_deformable_combine(parts, 2, &both);
     }
     if (!status) status = echinus_mesh_torus(0.1, 0.04, 60, 24, &torus);
     if (!status) status = echinus_map_build_exact(torus, NULL, &dish);
-    if (!status) status = weigh(both, &weight);
+    if (!status) status = weigh(body, &weight);
+    weight += 9.81 * CLOTH_DENSITY * 0.4 * 0.4;
     if (!status) status = drop(both, dish, &borne);
     if (!status)
         printf("%d tetrahedra with angles from %.0f to %.0f degrees; the dish bears %.0f %% of %.1f N\n",

@@ -18,18 +18,18 @@
 
 ECHINUS_EXPORT_BEGIN
 
-/// Deformable models after Jakobsen, "Advanced Character Physics" (GDC 2001), the method that the paper's
-/// simulations use (section 2.3): particles moved by Verlet integration, sticks between them relaxed one
-/// after the other, and collision with rigid models inside every relaxation. Or by extended position-based
-/// dynamics, XPBD (Macklin et al. 2016), in small steps (Macklin et al. 2019), where sticks are springs.
+/// Deformable models, cloth and soft bodies, as continuous materials in implicit steps, with contact and
+/// friction in the same energy (docs/mechanics.md). Or cloth after Jakobsen, "Advanced Character Physics"
+/// (GDC 2001), the method that the paper's simulations use (section 2.3): particles moved by Verlet
+/// integration, sticks between them relaxed one after the other, and collision with rigid models inside every
+/// relaxation.
 namespace echinus {
 
 /// The purpose of a stick; each kind has its own stiffness.
 enum class StickKind : std::uint8_t {
     Structural, ///< between neighbours of a row or column: keeps the cloth from stretching
     Shear,      ///< between neighbours along a diagonal: keeps its squares square
-    Bending,    ///< between every second particle of a row or column: keeps it from folding sharply. Folds
-                ///< are of this kind, too
+    Bending,    ///< between every second particle of a row or column: keeps it from folding sharply
 };
 inline constexpr std::size_t kStickKindCount = 3;
 
@@ -38,22 +38,6 @@ struct Stick {
     std::uint32_t a, b;
     float rest_length; ///< not negative
     StickKind kind;
-};
-
-/// Keeps two faces (a, b, c) and (b, a, d) with the common edge a b at the angle `rest_angle`. A face of no
-/// area has no angle, and then the fold leaves its particles as they are. Stiffness and compliance are those
-/// of StickKind::Bending.
-///
-/// The angle is 0 where the faces lie flat, positive where they are turned towards each other's fronts, and
-/// pi or -pi where they lie on each other. It is not taken modulo 2 pi: faces turn back through the flat
-/// state, never through each other.
-struct Fold {
-    std::uint32_t a, b; ///< the common edge
-    std::uint32_t c, d; ///< the corners opposite it
-    float rest_angle;   ///< radians, -pi to pi
-    /// Xpbd: error * lever is the way that the compliance takes for the extension of a spring; for instance
-    /// the mean height of c and d over the edge. Units, positive.
-    float lever;
 };
 
 /// Fixes a particle to a collider: it moves rigidly with the collider, from where it is at the start.
@@ -72,23 +56,22 @@ struct CollisionFilter {
 /// Particles and what holds them together, all in world units and axes.
 struct Deformable {
     std::vector<Vec3f> positions; ///< [particle_count]
-    /// [particle_count] one substep ago: positions - previous_positions = velocity * time_step /
-    /// substep_count.
+    /// [particle_count] one frame ago: positions - previous_positions = velocity * time_step.
     std::vector<Vec3f> previous_positions;
-    /// [particle_count] 1 / mass, in any unit where only ratios count, which they do unless sticks have a
-    /// compliance or there are tetrahedra; 0 for a pinned particle: it stays in place, or where it is
-    /// attached, and no collider pushes it.
+    /// [particle_count] 1 / mass; 0 for a pinned particle: it stays in place, or where it is attached, and no
+    /// collider pushes it. Jakobsen: in any unit, since only ratios count. Newton takes the masses of soft
+    /// bodies from here, in kg, and those of cloth from its ClothMaterial.
     std::vector<float> inverse_masses;
-    std::vector<Stick> sticks;             ///< in the order in which they are relaxed
-    std::vector<Triangle> faces;           ///< for pictures, wind and contact of surfaces
-    std::vector<Fold> folds{};             ///< in the order in which they are relaxed, before the sticks
+    /// In the order in which Jakobsen relaxes them. Of Newton's cloth only those count that are structural
+    /// and no edges of faces: threads.
+    std::vector<Stick> sticks;
+    std::vector<Triangle> faces;           ///< for Newton's cloth, pictures, wind and contact of surfaces
     std::vector<Attachment> attachments{}; ///< of pinned particles, at most one of each
-    /// In the order in which they are relaxed, after the sticks. A particle of theirs that is in no face lies
-    /// inside: where surfaces collide, those around it do, and it does not.
+    /// A particle of theirs that is in no face lies inside: those around it collide, and it does not.
     std::vector<ElasticTetrahedron> tetrahedra{};
     std::vector<CollisionFilter> filters{}; ///< in any order
     /// [particle_count] The shape at rest, in any place and pose; empty: as it begins. Newton's cloth has its
-    /// strain and its angles from it; sticks and folds have them themselves.
+    /// strain and its angles from it; sticks have their lengths themselves.
     std::vector<Vec3f> rest_positions{};
 
     std::size_t particle_count() const { return positions.size(); }
@@ -121,18 +104,9 @@ struct ClothOptions {
 
 /// A sheet with structural, shear and bending sticks; for 100 x 100 particles 59 002 of them. Particle (row,
 /// column) has index row * column_count + column; every face turns its front along the sheet's local z.
-/// Sticks are ordered row by row, with no common particle between successive sticks where possible, so that
-/// the processor can work on several at once.
+/// Sticks are ordered row by row.
 /// @throws Error InvalidOptions
 Deformable make_cloth(const ClothOptions& options);
-
-/// What keeps a cloth of a mesh from folding sharply.
-enum class BendingKind : std::uint8_t {
-    Angles, ///< a fold at each edge between two faces
-    Sticks, ///< a stick between the two corners opposite such an edge, as in the paper: it resists large
-            ///< angles more than small ones, does not tell a fold to the front from one to the back, and
-            ///< takes less time
-};
 
 /// How a mesh becomes a cloth, and where it starts.
 struct MeshClothOptions {
@@ -144,7 +118,6 @@ struct MeshClothOptions {
     /// Edges without faces: threads and needles. Where just two of them meet in a vertex, a bending stick
     /// across it keeps them straight.
     std::vector<std::array<std::uint32_t, 2>> threads{};
-    BendingKind bending = BendingKind::Angles;
     std::vector<std::uint32_t> pins{};     ///< vertices that never move
     std::vector<Attachment> attachments{}; ///< vertices that move with a collider
 };
@@ -156,11 +129,12 @@ struct MeshClothOptions {
 ///
 /// There is a structural stick along each edge and each thread. Two triangles that make up a quadrilateral
 /// with about right angles (within 20 degrees) have shear sticks along both diagonals instead, like the
-/// squares of a sheet. Sticks and folds are ordered in groups without a common particle, so that the
-/// processor can work on several at once.
+/// squares of a sheet. Across each other edge between two faces there is a bending stick, between the corners
+/// opposite it. Newton bends the faces themselves, and reads of the sticks only the threads.
 ///
 /// Masses are those of the areas around the particles in the rest shape; a thread weighs as much as a strip
-/// of cloth that is as wide as the mean edge is long. Their mean is 1, as in a sheet. Time O(n log n).
+/// of cloth that is as wide as the mean edge is long. Their mean is 1, as in a sheet; Newton weighs cloth by
+/// its ClothMaterial. Time O(n log n).
 /// @throws Error InvalidMesh, naming a face, edge or vertex at fault, when inspect() would throw, an edge has
 /// more than two faces, two faces have the same corners, a face has no area or a thread no length in the
 /// rest shape, or a vertex belongs to no face or thread (weld() drops such vertices); InvalidOptions for
@@ -171,28 +145,26 @@ Deformable make_cloth(const TriangleMesh& mesh, const MeshClothOptions& options)
 /// within `distance` of one place and has been no faster than `speed`. Neither suffices alone: a particle
 /// that trembles stays near one place, and cloth at the end of a swing is slow for a moment.
 ///
-/// A much lower speed may never be reached: gravity alone adds 0.04 units per second in one frame of 1/240 s,
-/// and a particle that contacts and sticks move slightly back and forth trembles at such a speed forever.
+/// Under SolverKind::Jakobsen a much lower speed may never be reached: gravity alone adds 0.04 units per
+/// second in one frame of 1/240 s, and a particle that contacts and sticks move slightly back and forth
+/// trembles at such a speed forever.
 struct RestCondition {
     double distance = 0.001;        ///< units
     double speed = 0.1;             ///< units per second, at the end of a frame; may be infinite
     std::uint32_t frame_count = 60; ///< at least 1
 };
 
-/// How sticks hold their particles.
+/// How a deformable moves.
 enum class SolverKind : std::uint8_t {
-    /// As sticks (Jakobsen 2001): each relaxation removes a share of the error. More relaxations per second
-    /// make a stiffer cloth.
-    Verlet,
-    /// As springs (XPBD: Macklin et al. 2016, equation 18): their extension under a force depends neither on
-    /// the number of relaxations, once there are enough, nor on the time step.
-    Xpbd,
     /// As a continuous material (docs/mechanics.md): each step minimises the energy of inertia, of the
-    /// material and of contact by Newton's method with multigrid. Cloth stretches as its ClothMaterial says,
-    /// whatever the resolution and the time step; 1/60 s per frame is a good step. In SI units.
+    /// material and of contact by Newton's method with multigrid. Cloth stretches as its ClothMaterial says
+    /// and soft bodies as theirs, whatever the resolution and the time step; 1/60 s per frame is a good step.
+    /// In SI units.
     Newton,
-    /// The paper's (section 2.3), for reproduction and comparison: as Verlet, and nothing but sticks and
-    /// particles that collide. It refuses folds, tetrahedra, surface_collision and measure_loads.
+    /// The paper's (section 2.3), for reproduction and comparison: Verlet integration, sticks of which each
+    /// relaxation removes a share of the error (Jakobsen 2001), and particles that collide. More relaxations
+    /// per second make a stiffer cloth, so frames of 1/240 s or less are needed. It refuses tetrahedra and
+    /// surface_collision, and measures no loads.
     Jakobsen,
 };
 
@@ -209,22 +181,17 @@ struct ClothMaterial {
 };
 
 struct SimulationOptions {
-    SolverKind solver = SolverKind::Verlet;
-    double time_step = 1.0 / 240; ///< seconds per frame. Half of it: twice the time, a quarter of the stretch
-    /// Relaxations per substep, of all folds and sticks and then of all contacts: more take longer and
-    /// stretch less.
+    SolverKind solver = SolverKind::Newton;
+    double time_step = 1.0 / 60; ///< seconds per frame. Jakobsen needs a quarter of that or less: half of it
+                                 ///< takes twice the time and leaves a quarter of the stretch
+    /// Jakobsen: relaxations per frame, of all sticks and then of all contacts: more take longer and stretch
+    /// less.
     std::uint32_t iteration_count = 10;
-    /// Xpbd: steps of time_step / substep_count that a frame is made of. For the same number of relaxations
-    /// in all, substeps of one each stretch least (Macklin et al. 2019). Verlet: 1.
-    std::uint32_t substep_count = 1;
     Vec3d gravity{0, 0, -9.81}; ///< units per second squared
-    double drag = 0.005; ///< share of the velocity that is lost per frame, 0 to 1. Newton: see air_drag
-    /// Verlet: share of a stick's or fold's error that one relaxation removes, by StickKind. 1 removes all;
-    /// from 1 to 2 (not included) it overshoots, which carries tension further per relaxation.
+    double drag = 0.005; ///< Jakobsen: share of the velocity that is lost per frame, 0 to 1. Newton: air_drag
+    /// Jakobsen: share of a stick's error that one relaxation removes, by StickKind. 1 removes all; from 1 to
+    /// 2 (not included) it overshoots, which carries tension further per relaxation.
     std::array<double, kStickKindCount> stiffness{1, 1, 0.3};
-    /// Xpbd: how far a stick gives per unit of force, by StickKind: length / (mass * length / s^2), with the
-    /// masses of the particles. 0 does not give.
-    std::array<double, kStickKindCount> compliance{0, 1e-6, 1e-4};
     ClothMaterial material{}; ///< Newton
     /// Newton: at most so many steps of Newton's method in each frame, or part of one; fewer where it has
     /// converged. Fewer than two leave contacts unresolved.
@@ -235,17 +202,17 @@ struct SimulationOptions {
     /// Newton: resistance of still air, 1/s: the rate at which a velocity decays that nothing keeps up,
     /// whatever the time step. 0 is a vacuum.
     double air_drag = 0.5;
-    /// Distance that particles keep from colliders, units. If not given, half the mean rest length of the
-    /// structural sticks, or 0 without any: with that the model cuts few faces of a cloth, and the cloth lies
-    /// close (docs/thickness.md). 0 is possible and slow: particles on the surface itself need a query in
-    /// every relaxation, and a face in twenty is cut. Newton: never less than a fiftieth of the mean edge.
+    /// Distance that the deformable keeps from colliders, units. If not given, half the mean rest length of
+    /// the structural sticks or, of soft bodies, half the mean edge (docs/thickness.md). Newton: never less
+    /// than a fiftieth of the mean edge. Jakobsen: 0 is possible and slow: particles on the surface itself
+    /// need a query in every relaxation, and a face in twenty is cut.
     std::optional<double> thickness{};
-    /// Coulomb's coefficient: tangential motion relative to the collider is shortened by this times the
-    /// length of the push, and never reversed. 0 is ice.
+    /// Coulomb's coefficient; 0 is ice. Jakobsen: tangential motion relative to the collider is shortened by
+    /// this times the length of the push, and never reversed.
     double friction = 0.5;
     RestCondition rest{};
-    /// false: no particle is rescued; those that cross the surface of an exact map are counted as lost and
-    /// left there. Only to demonstrate the effect of the proof at the end of a frame.
+    /// false under Jakobsen: no particle is rescued; those that cross the surface of an exact map are counted
+    /// as lost and left there. Only to demonstrate the effect of the proof at the end of a frame.
     bool keep_free = true;
     /// Accept exact maps of open meshes. Nothing is promised for them: near a gap it is only estimated what
     /// is inside, so particles get in there, some are pushed out through the surface, and lost_count tells
@@ -257,9 +224,7 @@ struct SimulationOptions {
     /// allow_open_colliders and keeps each particle on its side. Nothing may intersect at the start, no
     /// particle may begin inside a closed model (but see untangle), and keep_free must be true.
     bool surface_collision = false;
-    /// Needs surface_collision: the faces of the deformable do not meet each other either. A frame in which
-    /// it moves fast, relative to itself or to a model near by, is divided into up to 32 parts, each of which
-    /// takes about the time of a frame (docs/surfaces.md).
+    /// Needs surface_collision: the faces of the deformable do not meet each other either.
     bool self_collision = false;
     /// Distance that layers of the deformable keep from each other, units. If not given, the thickness. Near
     /// small faces it is less: at most 0.4 of the least height of a face, and a quarter of the mean
@@ -270,21 +235,12 @@ struct SimulationOptions {
     /// refused. Time: up to some hundred times that of looking for the pairs that intersect
     /// (intersections.hpp).
     bool untangle = false;
-    /// Keep account of what deformables put on the colliders, for load_on(). Takes a few percent of the time.
-    bool measure_loads = false;
     /// A particle farther than this from the middle of where the deformable began ends the simulation as
     /// diverged, units. 0: 10 000 times the deformable's extent at the start.
     double bound = 0;
-    /// Threads that compute a frame; 0: all cores. The bits do not depend on it. More than one share sticks,
-    /// folds, tetrahedra, particles beside exact maps and most of the contact of surfaces (docs/solvers.md),
-    /// wait awake while a frame lasts, and need oneTBB.
+    /// Threads that compute a frame; 0: all cores. The bits do not depend on it. More than one wait awake
+    /// while a frame lasts, and need oneTBB.
     unsigned thread_count = 1;
-    /// Verlet: before its relaxations, each frame relaxes coarser and coarser sheets of the same cloth, from
-    /// the coarsest on, so that large cloth hardly stretches: of 316 x 316 particles that hang by one edge,
-    /// the sticks are some 0.1 % too long instead of 140 % (docs/solvers.md). Takes less time than ten
-    /// relaxations. For rectangles of cloth, as make_cloth(ClothOptions) lays them, also as parts of what
-    /// combine() makes; what else there is, is relaxed as ever.
-    bool multilevel = false;
     /// Wind of every frame for which blow() is not called, with the numbers that blow() takes. A rate of 0:
     /// no air; then the wind must be 0, too.
     Vec3d wind{};         ///< units per second
@@ -293,42 +249,42 @@ struct SimulationOptions {
 
 /// What bears on a collider, in the world's axes.
 struct Load {
-    Vec3d force;  ///< mass * length / s^2, with masses in the unit in which inverse_masses are their inverses
-    Vec3d torque; ///< about where the pose's translation was when the frame began: mass * length^2 / s^2
+    Vec3d force;  ///< N
+    Vec3d torque; ///< N m, about where the pose's translation was when the frame began
 };
 
 /// Times and counts of step() since the simulation began. Times are not part of the result.
 struct SimulationProfile {
-    double integration_seconds = 0;  ///< Verlet, moving the colliders, and the check for divergence and rest
-    double constraint_seconds = 0;   ///< sticks and folds
-    double collision_seconds = 0;    ///< queries, push-out and friction
-    std::uint64_t query_count = 0;   ///< particle queries, counted per iteration and collider
-    std::uint64_t contact_count = 0; ///< of them, those that were pushed
-    /// Of them, those that needed the map; beside an exact map, a particle that has hardly moved is answered
-    /// from memory.
+    double integration_seconds = 0;  ///< Jakobsen: Verlet, and the check for divergence and rest
+    double constraint_seconds = 0;   ///< Newton: its steps; Jakobsen: sticks
+    double collision_seconds = 0;    ///< all about contact, and moving the colliders
+    std::uint64_t query_count = 0;   ///< Jakobsen: particle queries, counted per iteration and collider
+    std::uint64_t contact_count = 0; ///< Newton: contacts that push, by step; Jakobsen: queries that pushed
+    /// Jakobsen: queries that needed the map; beside an exact map, a particle that has hardly moved is
+    /// answered from memory.
     std::uint64_t map_query_count = 0;
-    /// Times that a particle was rescued: not free of all exact maps after the constraints of a frame, though
-    /// it was once, and put back to a free place. docs/conventions.md defines free, rescued and lost.
+    /// Jakobsen: times that a particle was rescued: not free of all exact maps after the relaxations of a
+    /// frame, though it was once, and put back to a free place. docs/conventions.md defines free, rescued and
+    /// lost.
     std::uint64_t rescued_count = 0;
-    /// Times that a particle was lost: it ended a frame not free of an exact map, though it was once; with
-    /// surface_collision only where it was squeezed (squeezed_count). It
-    /// counts once for each such map, and again in each frame that it ends so. A particle that began inside
-    /// and was never outside yet does not count.
+    /// Jakobsen: times that a particle was lost: it ended a frame not free of an exact map, though it was
+    /// once. It counts once for each such map, and again in each frame that it ends so. A particle that began
+    /// inside and was never outside yet does not count.
     std::uint64_t lost_count = 0;
     /// With surface_collision: times that a particle ended a frame, or a part of one that is divided, short
     /// of where it was going, because its edges or faces could have met something on the way.
     std::uint64_t truncated_count = 0;
-    /// Faces whose neighbourhood was searched, and pairs of a vertex and a face or of two edges that were
-    /// measured: the work of surface_collision, which keeps what it knows as long as that holds.
-    std::uint64_t searched_face_count = 0, measured_pair_count = 0;
+    /// With surface_collision: pairs of a vertex and a face or of two edges that were measured.
+    std::uint64_t measured_pair_count = 0;
     /// Times that no place for a particle was proven: a pinned particle was led through something, or
     /// colliders left no room between them. While it is 0, no faces intersect at the end of a frame, but for
     /// rounding, which is not counted, hundreds of a collider's radii from the origin (docs/surfaces.md).
     std::uint64_t squeezed_count = 0;
 };
 
-/// What relaxations have left undone: of the structural sticks, how far their lengths are from those at rest,
-/// as a share of these. 0.01 is 1 %. What springs with a compliance give by themselves is part of it.
+/// Of the structural sticks, how far their lengths are from those at rest, as a share of these. 0.01 is 1 %.
+/// Under Jakobsen it is what relaxations have left undone; under Newton the strain of the material is part
+/// of it.
 struct Residual {
     double root_mean_square = 0, largest = 0; ///< 0 without such sticks
 };
@@ -355,10 +311,15 @@ class Simulation {
     Simulation(Simulation&& other) noexcept;
     Simulation& operator=(Simulation&& other) noexcept;
 
-    /// One frame: substep_count times Verlet integration, drag with the first, colliders that move on along
-    /// their velocities, then iteration_count times all folds, all sticks and then collision of all particles
-    /// with all colliders; at last the proof that no particle passed through an exact map. Allocates nothing
-    /// without options.surface_collision.
+    /// One frame. Newton: colliders move on along their velocities and take along what is near them; then the
+    /// energy is minimised, and no step towards the minimum is longer than what keeps faces apart: no face
+    /// meets a collider, or another face with options.self_collision, when a frame ends. docs/surfaces.md has
+    /// the limits, most of which squeezed_count counts where they were met. A frame in which a collider
+    /// moves far is divided into up to 32 steps.
+    ///
+    /// Jakobsen: Verlet integration with drag, colliders that move on, then iteration_count times all sticks
+    /// and collision of all particles with all colliders; at last the proof that no particle passed through
+    /// an exact map. Allocates nothing.
     ///
     /// A distance map pushes along its rays (docs/paper.md), and a custom map to the points that it names,
     /// both gently: a particle that is not inside is pushed no farther than it came. An exact map pushes to
@@ -379,12 +340,6 @@ class Simulation {
     ///   of the first of them, or else of the next, and counts as lost to the others.
     /// - Far from the origin, floats may be too coarse for the room around the last free place. A particle
     ///   that cannot be placed there counts as lost.
-    ///
-    /// With options.surface_collision edges and faces collide in each relaxation, and the proof at the end is
-    /// about them: no face meets a collider, or another face with options.self_collision, when a frame ends;
-    /// docs/surfaces.md has the limits, most of which squeezed_count counts where they were met. The arrays
-    /// of pairs that are near grow as far as needed, geometrically; a step that does not need more allocates
-    /// nothing.
     /// @throws Error Diverged, naming the frame, and so does each further step; as ExactMap::build() where a
     /// vertex cache leads a collider to a surface of which no map can be built: then nothing has changed, and
     /// the simulation can go on after set_collider_cache() with another cache
@@ -397,13 +352,13 @@ class Simulation {
     const SimulationOptions& options() const;
     /// Frames computed so far.
     std::uint32_t frame() const;
-    /// Speed of the fastest particle in the last substep, units per second; infinite before the first.
+    /// Speed of the fastest particle in the last frame, units per second; infinite before the first.
     double largest_speed() const;
     /// Has the rest condition held for the required number of frames?
     bool at_rest() const;
     const SimulationProfile& profile() const;
-    /// At the end of the last frame. Large residuals call for more relaxations, for smaller steps or for
-    /// SimulationOptions::multilevel (docs/solvers.md). Time: about a third of a relaxation of all sticks.
+    /// At the end of the last frame. Under Jakobsen large residuals call for more relaxations or smaller
+    /// steps. Time: about a third of a relaxation of all sticks.
     Residual residual() const;
     /// XXH64 of the bits of all positions and previous positions.
     std::uint64_t state_hash() const;
@@ -449,17 +404,15 @@ class Simulation {
     /// times or places that are not finite; and as above
     void set_collider_cache(std::size_t collider_index, VertexCache cache);
 
-    /// What the deformable put on a collider in the last frame, as its mean over the frame: the momentum that
-    /// contacts, friction, rescue and truncation gave to particles, with the opposite sign. Also what sticks
-    /// and folds pull at particles that are attached to it, provided that all pinned particles are. Before
-    /// the first frame 0. A host that moves a rigid body by it and then the collider by the body exchanges
-    /// momentum with the deformable (examples/08_load).
-    /// @pre collider_index < colliders().size(), and options().measure_loads
+    /// Newton: what the deformable put on a collider in the last frame by contact and friction, as its mean
+    /// over the frame. Before the first frame 0, and always under Jakobsen. A host that moves a rigid body by
+    /// it and then the collider by the body exchanges momentum with the deformable (examples/08_load).
+    /// @pre collider_index < colliders().size()
     Load load_on(std::size_t collider_index) const;
 
     /// Gives a particle a velocity, units per second, from which the next frame goes on as from any other:
-    /// sticks pull at it and colliders stop it, so a hand that drags particles by setting their velocities
-    /// towards itself before each frame drags none of them into a model. A pinned particle stays.
+    /// the material pulls at it and colliders stop it, so a hand that drags particles by setting their
+    /// velocities towards itself before each frame drags none of them into a model. A pinned particle stays.
     /// @pre particle < particle_count(), and the velocity is finite
     void set_particle_velocity(std::size_t particle, const Vec3d& velocity);
 

@@ -28,23 +28,21 @@ struct SoftBodyOptions {
 };
 
 /// A body at rest. Its particles are the mesh's vertices, its faces the mesh's boundary(), in their order. A
-/// vertex has the mass of a quarter of each tetrahedron around it. Tetrahedra are ordered in groups without a
-/// common particle, so that the processor can work on several at once. Simulate it with SolverKind::Xpbd,
-/// one iteration and ten substeps or more. Time O(n log n).
+/// vertex has the mass of a quarter of each tetrahedron around it. It needs SolverKind::Newton. Time
+/// O(n log n).
 /// @throws Error InvalidMesh, naming a tetrahedron or vertex at fault, as require_valid_tetrahedra(), and
 /// when a vertex belongs to no tetrahedron; InvalidOptions for options out of range, and for vertices that
 /// the mesh does not have
 Deformable make_soft_body(const TetrahedralMesh& mesh, const SoftBodyOptions& options);
 
 /// Several deformables as one: cloth and organ, two organs. With self_collision they collide with each other.
-/// The particles, and all that names them, follow one part after the other. Masses stay as they are, so they
-/// must be in one unit: see with_masses_times(). Time O(n).
+/// The particles, and all that names them, follow one part after the other. Time O(n).
 /// @throws Error InvalidOptions for a part that no simulation would take, naming the part and what is at
 /// fault
 Deformable combine(std::span<const Deformable> parts);
 
-/// The same deformable, with all masses times a factor, finite and positive. A cloth's particles have the
-/// mean mass 1, so its mass / particle_count brings it to the unit of that mass.
+/// The same deformable, with all masses times a factor, finite and positive. Newton's cloth has its masses
+/// from its ClothMaterial.
 Deformable with_masses_times(double factor, Deformable deformable);
 
 } // namespace echinus

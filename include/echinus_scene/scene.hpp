@@ -70,7 +70,6 @@ struct MeshCloth {
     std::optional<SceneModel> rest_mesh; ///< the same faces; if not given, it starts at rest
     RigidTransform pose;
     double scale = 1;
-    BendingKind bending = BendingKind::Angles;
     VertexChoice pins;
 };
 
@@ -123,11 +122,13 @@ struct Scene {
     std::optional<MeshCloth> mesh_cloth;            ///< in place of `cloth`
     std::vector<SceneAttachment> cloth_attachments; ///< by numbers, of a sheet: row * column_count + column
     SceneVelocity cloth_velocity;
-    std::optional<double> cloth_density;      ///< mass per area; without one particles have the mean mass 1
     std::vector<std::uint32_t> cloth_ignores; ///< colliders that it passes through, by their numbers
     std::vector<SceneBody> bodies;            ///< soft bodies, after the cloth
     SimulationOptions simulation;
     std::uint32_t frame_limit = 3000; ///< the simulation ends here at the latest
+    /// Sentences about keys of earlier versions, or of another solver, that have no effect, and about what to
+    /// write in their place. For users to see.
+    std::vector<std::string> warnings;
 };
 
 /// @throws Error Unreadable, or InvalidScene with a sentence that begins with the path and names the key at

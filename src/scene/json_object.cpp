@@ -291,6 +291,12 @@ void JsonObject::refuse_keys(std::initializer_list<const char*> keys, const std:
         if (has(key)) refuse(key, "left out, or \"" + choice + "\" must be \"" + word + "\"");
 }
 
+std::optional<std::string> JsonObject::ignore(const char* key, const std::string& instead) {
+    if (!has(key)) return std::nullopt;
+    known_keys_.emplace_back(key);
+    return scene_name_ + ": the key " + path_of(key) + " has no effect " + instead;
+}
+
 void JsonObject::refuse(const char* key, const std::string& expected) const {
     fail(path_of(key) + " is " + excerpt(value_.at(key)) + "; it must be " + expected);
 }

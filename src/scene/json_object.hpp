@@ -73,6 +73,11 @@ class JsonObject {
     void refuse_keys(std::initializer_list<const char*> keys, const std::string& choice,
                      const std::string& word) const;
 
+    /// Accepts a key, whatever its value, that has no effect.
+    /// @param instead  what to do, which completes "...has no effect "
+    /// @return the sentence about it, if it is there
+    std::optional<std::string> ignore(const char* key, const std::string& instead);
+
     /// Refuses the value of a key: `expected` completes "...; it must be ".
     [[noreturn]] void refuse(const char* key, const std::string& expected) const;
 

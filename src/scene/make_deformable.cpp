@@ -83,7 +83,7 @@ Deformable make_sheet(const Scene& scene) {
 Deformable make_cloth(const MeshCloth& cloth, const std::vector<SceneAttachment>& attachments,
                       const NamedMesh& start, const ClothMeshes& meshes) {
     require_no_origin(start.mesh.origin, "the cloth"); // before boxes choose vertices
-    MeshClothOptions options{.pose = cloth.pose, .scale = cloth.scale, .bending = cloth.bending};
+    MeshClothOptions options{.pose = cloth.pose, .scale = cloth.scale};
     if (cloth.rest_mesh) {
         NamedMesh rest(*cloth.rest_mesh, meshes.rest_mesh, "cloth.rest_mesh");
         require_same_faces(start, rest);
@@ -147,30 +147,17 @@ Vec3d centre_of_mass(const Deformable& deformable) {
 }
 
 void set_velocity(const SceneVelocity& velocity, const SimulationOptions& options, Deformable& deformable) {
-    const double substep = options.time_step / options.substep_count;
     const Vec3d centre = centre_of_mass(deformable);
     for (std::size_t i = 0; i < deformable.particle_count(); ++i) {
         if (deformable.inverse_masses[i] == 0) continue;
         const Vec3d place(deformable.positions[i]);
         const Vec3d of_particle = velocity.linear + cross(velocity.angular, place - centre);
-        deformable.previous_positions[i] = Vec3f(place - of_particle * substep);
+        deformable.previous_positions[i] = Vec3f(place - of_particle * options.time_step);
     }
-}
-
-double area_of(const Deformable& deformable) {
-    const auto at = [&](std::uint32_t i) { return Vec3d(deformable.positions[i]); };
-    double area = 0;
-    for (const auto& [a, b, c] : deformable.faces) area += length(cross(at(b) - at(a), at(c) - at(a))) / 2;
-    return area;
 }
 
 Deformable cloth_of(const Scene& scene, const ClothMeshes& meshes) {
     Deformable cloth = make_cloth(scene, meshes);
-    if (scene.cloth_density) {
-        const double factor =
-            *scene.cloth_density * area_of(cloth) / static_cast<double>(cloth.particle_count());
-        cloth = with_masses_times(factor, std::move(cloth));
-    }
     set_velocity(scene.cloth_velocity, scene.simulation, cloth);
     return cloth;
 }

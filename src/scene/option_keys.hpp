@@ -69,8 +69,6 @@ inline void read_sheet_options(JsonObject& object, ClothOptions& o) {
 
 inline void read_mesh_cloth_options(JsonObject& object, MeshCloth& o) {
     object.read("scale", o.scale, {1e-9, 1e9});
-    if (const auto word = object.read_word("bending", {"angles", "sticks"}))
-        o.bending = static_cast<BendingKind>(*word);
 }
 
 inline void read_body_options(JsonObject& object, SoftBodyOptions& o) {
@@ -84,19 +82,12 @@ inline void read_body_options(JsonObject& object, SoftBodyOptions& o) {
 inline void read_solver_options(JsonObject& object, SimulationOptions& o) {
     object.read("time_step", o.time_step, {1e-9, 1e9});
     object.read("iterations", o.iteration_count, {1, 1e6});
-    object.read("substeps", o.substep_count, {1, 1e6});
-    object.read("gravity", o.gravity, {-1e9, 1e9});
-    object.read("measure_loads", o.measure_loads);
-    object.read("thread_count", o.thread_count, {0, 1024});
-    object.read("multilevel", o.multilevel);
     object.read("newton_steps", o.newton_step_count, {1, 1000});
+    object.read("gravity", o.gravity, {-1e9, 1e9});
+    object.read("thread_count", o.thread_count, {0, 1024});
     object.read("newton_tolerance", o.newton_tolerance, {0, 1});
     object.read("wind", o.wind, {-1e9, 1e9});
     object.read("wind_rate", o.wind_rate, {0, 1e9});
-    if (o.solver != SolverKind::Verlet && o.solver != SolverKind::Xpbd && o.solver != SolverKind::Jakobsen)
-        object.refuse_keys({"iterations"}, "solver", "verlet\", \"xpbd\" or \"jakobsen");
-    if (o.solver != SolverKind::Xpbd) object.refuse_keys({"substeps"}, "solver", "xpbd");
-    if (o.solver != SolverKind::Verlet) object.refuse_keys({"multilevel"}, "solver", "verlet");
     if (o.solver != SolverKind::Newton)
         object.refuse_keys({"newton_steps", "newton_tolerance"}, "solver", "newton");
 }
@@ -114,18 +105,10 @@ inline void read_material_options(JsonObject& object, SimulationOptions& o) {
     if (o.solver != SolverKind::Newton) object.refuse_keys({"air_drag"}, "solver", "newton");
 }
 
-inline void read_verlet_options(JsonObject& object, SimulationOptions& o) {
+inline void read_jakobsen_options(JsonObject& object, SimulationOptions& o) {
     object.read("structural", o.stiffness[0], {0, 1.99});
     object.read("shear", o.stiffness[1], {0, 1.99});
     object.read("bending", o.stiffness[2], {0, 1.99});
-    if (o.solver != SolverKind::Verlet && o.solver != SolverKind::Jakobsen)
-        object.refuse_keys({"structural", "shear", "bending"}, "solver", "verlet\" or \"jakobsen");
-}
-
-inline void read_xpbd_options(JsonObject& object, SimulationOptions& o) {
-    object.read("structural", o.compliance[0], {0, 1e9});
-    object.read("shear", o.compliance[1], {0, 1e9});
-    object.read("bending", o.compliance[2], {0, 1e9});
 }
 
 inline void read_thickness_options(JsonObject& object, SimulationOptions& o) {

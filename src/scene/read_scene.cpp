@@ -8,6 +8,7 @@
 #include <cmath>
 #include <fstream>
 #include <numbers>
+#include <span>
 
 namespace echinus {
 
@@ -22,8 +23,8 @@ constexpr Range kSegmentCount{1, 4096};
 constexpr Range kDegrees{-1e6, 1e6};
 /// Of the square of a quaternion's length.
 constexpr double kUnitTolerance = 1e-4;
-constexpr double kNewtonTimeStep =
-    1.0 / 60; ///< unless a scene says otherwise: the solver needs no smaller one
+/// Unless a scene says otherwise: its sticks need a smaller one than the options have.
+constexpr double kJakobsenTimeStep = 1.0 / 240;
 constexpr double kRadiansPerDegree = std::numbers::pi / 180;
 
 /// The defaults beside an exact map. Beside a distance map surfaces collide only where the scene asks for it.
@@ -32,6 +33,39 @@ constexpr bool kSelfCollision = true; ///< where surfaces collide
 
 /// With "small_holes" and without "hole_edges".
 constexpr std::uint32_t kUsualHoleEdges = 32;
+
+/// A key of the solvers of earlier versions, or of the paper's, and what to write in its place.
+struct KeyWithoutEffect {
+    const char* key;
+    const char* instead;
+};
+constexpr const char* kNewtonHasNone =
+    "under the newton solver, which converges; leave it out, or see newton_steps";
+constexpr KeyWithoutEffect kOfTheScene[] = {{"iterations", kNewtonHasNone}};
+constexpr KeyWithoutEffect kOfTheMaterial[] = {
+    {"structural", "under the newton solver; write material.stretch_stiffness, in N/m"},
+    {"shear", "under the newton solver; write material.shear_stiffness, in N/m"},
+    {"bending", "under the newton solver; write material.bending_stiffness, in N m"},
+    {"drag", "under the newton solver; write material.air_drag, in 1/s"},
+};
+/// Under either solver.
+constexpr KeyWithoutEffect kOfTheSceneBefore[] = {
+    {"substeps", "any more; leave it out"},
+    {"multilevel", "any more, since the newton solver converges at every resolution; leave it out"},
+};
+constexpr KeyWithoutEffect kOfTheMaterialBefore[] = {
+    {"compliance",
+     "any more; write material.stretch_stiffness, material.shear_stiffness and material.bending_stiffness"},
+};
+constexpr KeyWithoutEffect kOfTheClothBefore[] = {
+    {"bending", "any more; the newton solver bends by angles, and jakobsen by sticks"},
+};
+
+/// Warns of those that are there.
+void ignore(JsonObject& object, std::span<const KeyWithoutEffect> keys, Scene& scene) {
+    for (const auto& [key, instead] : keys)
+        if (auto warning = object.ignore(key, instead)) scene.warnings.push_back(*std::move(warning));
+}
 
 using Counts = std::array<std::uint32_t, 2>;
 
@@ -315,7 +349,7 @@ std::vector<std::uint32_t> read_particles(JsonObject& object, const char* key, c
 }
 
 void read_sheet(JsonObject& cloth, Scene& scene) {
-    for (const char* key : {"rest_mesh", "scale", "bending"})
+    for (const char* key : {"rest_mesh", "scale"})
         if (cloth.has(key)) cloth.refuse(key, "left out, or the cloth must have the key \"mesh\"");
     ClothOptions& options = scene.cloth;
     read_sheet_options(cloth, options);
@@ -354,11 +388,8 @@ void read_mesh_cloth(JsonObject& cloth, Scene& scene) {
     made.mesh = read_model(cloth, "mesh");
     if (cloth.has("rest_mesh")) made.rest_mesh = read_model(cloth, "rest_mesh");
     made.pose = read_pose(cloth);
-    const bool has_sticks_only = scene.simulation.solver == SolverKind::Jakobsen;
-    if (has_sticks_only) made.bending = BendingKind::Sticks;
     read_mesh_cloth_options(cloth, made);
-    if (has_sticks_only && made.bending != BendingKind::Sticks)
-        cloth.refuse("bending", "\"sticks\", or another solver than \"jakobsen\"");
+    ignore(cloth, kOfTheClothBefore, scene);
     made.pins = read_vertices(cloth, "pins");
     scene.cloth_attachments = read_attachments(cloth, scene, "vertices", read_vertices);
 }
@@ -410,8 +441,8 @@ void read_cloth(JsonObject& root, Scene& scene) {
     if (!scene.has_cloth) return;
     root.require("cloth");
     auto cloth = root.object("cloth");
-    if (!scene.bodies.empty()) cloth->require("density");
-    cloth->read("density", scene.cloth_density, {1e-9, 1e15});
+    if (scene.simulation.solver != SolverKind::Newton) cloth->refuse_keys({"density"}, "solver", "newton");
+    cloth->read("density", scene.simulation.material.density, {1e-6, 1e6});
     scene.cloth_velocity = read_velocity(*cloth);
     read_thickness_options(*cloth, scene.simulation);
     scene.cloth_ignores = read_ignores(*cloth, scene);
@@ -419,13 +450,6 @@ void read_cloth(JsonObject& root, Scene& scene) {
         cloth->refuse_keys({"self_thickness"}, "map.kind", "exact");
     cloth->has("mesh") ? read_mesh_cloth(*cloth, scene) : read_sheet(*cloth, scene);
     cloth->finish();
-}
-
-void read_compliance(JsonObject& material, SimulationOptions& options) {
-    auto object = material.object("compliance");
-    if (!object) return;
-    read_xpbd_options(*object, options);
-    object->finish();
 }
 
 /// @pre the solver and the cloth were read
@@ -438,11 +462,11 @@ void read_material(JsonObject& root, Scene& scene) {
             if (material->has(key)) material->refuse(key, "in \"cloth\", where there is one");
     }
     read_thickness_options(*material, options);
-    read_verlet_options(*material, options);
-    if (options.solver != SolverKind::Xpbd) material->refuse_keys({"compliance"}, "solver", "xpbd");
+    read_jakobsen_options(*material, options);
     read_newton_options(*material, options);
-    read_compliance(*material, options);
     read_material_options(*material, options);
+    if (options.solver == SolverKind::Newton) ignore(*material, kOfTheMaterial, scene);
+    ignore(*material, kOfTheMaterialBefore, scene);
     material->finish();
 }
 
@@ -455,7 +479,7 @@ void read_surfaces(JsonObject& root, Scene& scene) {
     read_surfaces_options(root, options);
     const bool surfaces = options.surface_collision;
     if (surfaces && has_particles_only)
-        root.refuse("surface_collision", "false, or another solver than \"jakobsen\"");
+        root.refuse("surface_collision", "false, or \"solver\" must be \"newton\"");
     if (!root.has("self_collision")) options.self_collision = surfaces && kSelfCollision;
     if (options.self_collision && !surfaces)
         root.refuse("self_collision", "false, or \"surface_collision\" must be true");
@@ -469,26 +493,24 @@ void read_surfaces(JsonObject& root, Scene& scene) {
         root.refuse("untangle", "false, or \"surface_collision\" must be true");
 }
 
-/// @pre the bodies were read, which need small steps
+/// @pre the bodies were read
 void read_solver(JsonObject& root, Scene& scene) {
     SimulationOptions& options = scene.simulation;
-    const std::size_t usual = scene.bodies.empty() ? 0 : 1;
-    const std::size_t solver =
-        root.read_word("solver", {"verlet", "xpbd", "newton", "jakobsen"}).value_or(usual);
-    if (solver < usual || (usual == 1 && solver == 3))
-        root.refuse("solver", "\"xpbd\", \"newton\" or left out where there are bodies");
-    if (solver == 3) options.solver = SolverKind::Jakobsen;
-    if (solver == 2) {
-        options.solver = SolverKind::Newton;
-        options.time_step = kNewtonTimeStep;
+    constexpr std::size_t kJakobsen = 1, kVerlet = 2;
+    const std::size_t solver = root.read_word("solver", {"newton", "jakobsen", "verlet", "xpbd"}).value_or(0);
+    if (solver == kJakobsen) {
+        if (!scene.bodies.empty()) root.refuse("solver", "\"newton\" or left out where there are bodies");
+        options.solver = SolverKind::Jakobsen;
+        options.time_step = kJakobsenTimeStep;
     }
-    if (solver == 1) {
-        // As much work as ten iterations, in small steps.
-        options.solver = SolverKind::Xpbd;
-        options.iteration_count = 1;
-        options.substep_count = 10;
-    }
+    if (solver >= kVerlet)
+        scene.warnings.push_back(*root.ignore("solver",
+                                              "as \"verlet\" and \"xpbd\" exist no more, and newton is "
+                                              "used; write \"newton\", or \"jakobsen\" for the "
+                                              "paper's sticks"));
     read_solver_options(root, options);
+    if (options.solver == SolverKind::Newton) ignore(root, kOfTheScene, scene);
+    ignore(root, kOfTheSceneBefore, scene);
     if (options.wind != Vec3d{}) root.require("wind_rate");
 }
 

@@ -30,7 +30,6 @@ ColliderNow::ColliderNow(const Collider& collider, const RigidTransform& previou
       step(map.radius / static_cast<float>(kLatticeExtent) * largest_of(collider.scale)),
       guard(kGuard * step), thickness(std::max(static_cast<float>(options.thickness.value()), 2 * guard)),
       friction(static_cast<float>(options.friction)),
-      two_sided(options.surface_collision && !map.border.empty()),
       coordinate_sum(sum_of_coordinates(collider.pose.translation) +
                      sum_of_coordinates({double{map.centre.x} * collider.scale.x,
                                          double{map.centre.y} * collider.scale.y,

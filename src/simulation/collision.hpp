@@ -3,11 +3,9 @@
 #include "geometry/workers.hpp"
 #include "simulation/particles.hpp"
 #include "simulation/state/state_archive.hpp"
-#include "simulation/surface_motion.hpp"
 
 #include <echinus/simulation.hpp>
 
-#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -24,20 +22,12 @@ class Collision {
     virtual ~Collision() = default;
     virtual std::unique_ptr<Collision> clone() const = 0;
 
-    /// @param motion  how its surface deforms in this frame, or null; lives as long as the frame
-    virtual void begin_frame(const Collider&, const SurfaceMotion* /*motion*/) {}
-    /// Nothing was asked of it for a while, in which the collider may have moved; it stands here now.
-    virtual void resume(const Collider&) {}
-    /// The collider may have moved.
-    virtual void begin_substep(const Collider& collider, const RigidTransform& previous_pose) = 0;
+    /// @param collider       where the frame leads it
+    /// @param previous_pose  from where it comes
+    virtual void begin_frame(const Collider& collider, const RigidTransform& previous_pose) = 0;
     /// One relaxation of all particles.
     /// @param workers  may share them
     virtual void relax(Particles& particles, SimulationProfile& profile, const Workers& workers) = 0;
-
-    /// Lower bounds of the particles' distances from the surface, as far as they are known without a query.
-    virtual void known_clearances(const Particles&, std::span<float> clearances) const {
-        std::fill(clearances.begin(), clearances.end(), 0.0F);
-    }
 
     /// Lists the particles that are not proven free where they are; pinned ones are never among them.
     virtual std::span<const std::uint32_t> find_unproven(const Particles&) { return {}; }
@@ -51,8 +41,6 @@ class Collision {
     /// The particle ends this frame lost. @return false when that was said before in this frame
     virtual bool mark_lost(std::size_t /*i*/) { return false; }
     virtual void end_frame(const Particles&) {}
-    /// The same of a collider that is away: no particle is near.
-    virtual void end_frame_away() {}
 
     /// @param collider  where it stands between two frames
     virtual void archive(StateArchive&, const Collider& /*collider*/) {}

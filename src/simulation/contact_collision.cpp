@@ -50,7 +50,7 @@ ContactCollision::ContactCollision(const Collider& collider, const Particles& pa
       reach_(plan_for(collider).reach_in_thicknesses * rules_.thickness),
       places_(std::min(plan_for(collider).piece_size, particles.count())), contacts_(places_.size()) {}
 
-void ContactCollision::begin_substep(const Collider& collider, const RigidTransform& previous_pose) {
+void ContactCollision::begin_frame(const Collider& collider, const RigidTransform& previous_pose) {
     collider_.pose = collider.pose;
     material_ = MaterialMotion(previous_pose, collider.pose);
 }

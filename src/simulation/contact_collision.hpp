@@ -16,7 +16,7 @@ class ContactCollision final : public Collision {
                      std::span<const std::uint8_t> passes, const SimulationOptions& options);
     std::unique_ptr<Collision> clone() const override { return std::make_unique<ContactCollision>(*this); }
 
-    void begin_substep(const Collider& collider, const RigidTransform& previous_pose) override;
+    void begin_frame(const Collider& collider, const RigidTransform& previous_pose) override;
     void relax(Particles& particles, SimulationProfile& profile, const Workers& workers) override;
 
   private:

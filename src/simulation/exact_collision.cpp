@@ -30,29 +30,12 @@ ExactCollision::ExactCollision(const Collider& collider, const Particles& partic
     moved_along_.resize(particles.count());
 }
 
-void ExactCollision::begin_frame(const Collider& collider, const SurfaceMotion* motion) {
-    frame_start_pose_ = collider.pose;
-    motion_ = motion;
-    free_places_.begin_frame(collider, motion != nullptr ? &motion->carried : nullptr);
+void ExactCollision::begin_frame(const Collider& collider, const RigidTransform& previous_pose) {
+    frame_start_pose_ = previous_pose;
+    free_places_.begin_frame(collider, previous_pose);
     moves_ = collider.moves();
-    if (motion != nullptr) known_.weaken(motion->most);
-}
-
-void ExactCollision::resume(const Collider& collider) {
-    now_ = ColliderNow(collider, collider.pose, options_);
-    known_.follow(now_);
-}
-
-void ExactCollision::begin_substep(const Collider& collider, const RigidTransform& previous_pose) {
     now_ = ColliderNow(collider, previous_pose, options_);
     if (moves_) known_.follow(now_);
-    if (motion_ == nullptr) return;
-    // Each substep looks at the surface as it ends the frame, and takes its share of the motion.
-    drift_.resize(moved_along_.x.size() - PointArrays::kPadding);
-    const float share = 1 / static_cast<float>(options_.substep_count);
-    for (std::size_t i = 0; i + PointArrays::kPadding < drift_.x.size(); ++i)
-        drift_.set(i, now_.body.normal_to_world(motion_->carried[i]) * share);
-    now_.drift = &drift_;
 }
 
 void ExactCollision::archive(StateArchive& state, const Collider& collider) {
@@ -137,39 +120,21 @@ void ExactCollision::ask_for_nearest(std::span<const std::uint32_t> asked,
     stretched_contacts_batch(now_.map, places_local, reach, std::span(contacts).first(asked.size()),
                              now_.scale);
     for (std::size_t n = 0; n < asked.size(); ++n) {
-        remember(asked[n], particles, contacts[n], reach);
+        remember(asked[n], particles.positions[asked[n]], contacts[n], reach);
         if (contacts[n].found()) piece.contact_count += push_one(known_, now_, asked[n], particles) ? 1 : 0;
     }
     piece.map_query_count += asked.size();
 }
 
-void ExactCollision::remember(std::size_t i, const Particles& particles, const Contact& nearest,
-                              float reach) {
-    const Vec3f position = particles.positions[i];
+void ExactCollision::remember(std::size_t i, const Vec3f& position, const Contact& nearest, float reach) {
     if (!nearest.found()) return known_.remember(i, now_, position, reach);
-    const bool is_inside = nearest.inside && !now_.two_sided;
-    known_.remember(i, now_, position, is_inside ? 0 : std::fabs(nearest.depth));
-    const Vec3f normal = now_.two_sided ? normal_to_own_side(i, particles, nearest) : nearest.normal;
+    known_.remember(i, now_, position, nearest.inside ? 0 : std::fabs(nearest.depth));
     const Vec3f over_plane = known_.asked_at_body[i] - now_.to_body(nearest.point);
-    known_.remember_plane(i, now_, normal, dot(over_plane, normal));
-}
-
-/// The particle has crossed nothing since it was free last, so its side is the one where it is; on the
-/// surface itself, within rounding, the one where it was.
-Vec3f ExactCollision::normal_to_own_side(std::size_t i, const Particles& particles,
-                                         const Contact& nearest) const {
-    const bool is_certain = std::fabs(nearest.depth) > now_.guard;
-    const Vec3f seen_from =
-        is_certain ? known_.asked_at_body[i] : now_.to_body(free_places_.local(i, particles));
-    const Vec3f way = seen_from - now_.to_body(nearest.point);
-    return dot(way, nearest.normal) < 0 ? -nearest.normal : nearest.normal;
+    known_.remember_plane(i, now_, nearest.normal, dot(over_plane, nearest.normal));
 }
 
 bool ExactCollision::meet_on_the_way(std::size_t i, const Particles& particles, Piece& piece) {
     if (!options_.keep_free || !free_places_.has(i)) return false;
-    // The surface may have come over the place where a particle was free.
-    if (motion_ != nullptr && !now_.two_sided && contains(now_.map, free_places_.local(i, particles)))
-        return false;
     const Vec3f position = particles.positions[i];
     if (length(position - known_.asked_at[i]) < known_.clearance[i]) return false;
     ++piece.map_query_count;
@@ -183,25 +148,13 @@ bool ExactCollision::meet_on_the_way(std::size_t i, const Particles& particles, 
     return true;
 }
 
-void ExactCollision::known_clearances(const Particles& particles, std::span<float> clearances) const {
-    for (std::size_t i = 0; i < particles.count(); ++i) {
-        const float used = length(particles.positions[i] - known_.asked_at[i]) + now_.guard;
-        // Nothing is known of a pinned particle, whose map is never asked.
-        clearances[i] = particles.pinned(i) ? 0 : std::max(known_.clearance[i] - used, 0.0F);
-    }
-}
-
 std::span<const std::uint32_t> ExactCollision::find_unproven(const Particles& particles) {
-    const bool takes_along = moves_ || motion_ != nullptr;
-    if (takes_along) {
+    if (moves_) {
         const FrameChange before(frame_start_pose_, {1, 1, 1});
-        for (std::size_t i = 0; i < particles.count(); ++i) {
-            Vec3f place = before.point_to_local(particles.frame_start[i]);
-            if (motion_ != nullptr) place += motion_->carried[i];
-            moved_along_.set(i, now_.body.point_to_world(place));
-        }
+        for (std::size_t i = 0; i < particles.count(); ++i)
+            moved_along_.set(i, now_.body.point_to_world(before.point_to_local(particles.frame_start[i])));
     }
-    const PointArrays& free_now = takes_along ? moved_along_ : particles.frame_start;
+    const PointArrays& free_now = moves_ ? moved_along_ : particles.frame_start;
     unproven_.count = 0;
     list_unproven(known_, now_, particles.positions, free_now, unproven_);
     // These were compared with where they were at the start of the frame, not with where they were free last.
@@ -231,8 +184,7 @@ void ExactCollision::take_back(std::size_t i, Particles& particles) const {
 }
 
 void ExactCollision::end_frame(const Particles& particles) {
-    // Where the surface deforms, a place that was free before this frame need not be one now.
-    free_places_.end_frame(now_, particles, options_.keep_free && motion_ == nullptr);
+    free_places_.end_frame(now_, particles, options_.keep_free);
 }
 
 } // namespace echinus

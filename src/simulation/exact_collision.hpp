@@ -20,23 +20,17 @@ namespace echinus {
 ///
 /// After the relaxations comes the proof (SweptParticle). Most particles are proven free by what is known
 /// already; the others are swept.
-///
-/// With surface_collision no particle passes through anything, so an open mesh needs no inside: particles
-/// are pushed to the side from which they came.
 class ExactCollision final : public Collision {
   public:
-    /// Particles that are outside now are free, all of them beside a surface with two sides.
+    /// Particles that are outside now are free.
     ExactCollision(const Collider& collider, const Particles& particles, std::span<const std::uint8_t> passes,
                    const SimulationOptions& options);
     std::unique_ptr<Collision> clone() const override { return std::make_unique<ExactCollision>(*this); }
 
-    void begin_frame(const Collider& collider, const SurfaceMotion* motion) override;
-    void resume(const Collider& collider) override;
-    void begin_substep(const Collider& collider, const RigidTransform& previous_pose) override;
+    void begin_frame(const Collider& collider, const RigidTransform& previous_pose) override;
     /// To the thickness over the nearest point, with friction.
     void relax(Particles& particles, SimulationProfile& profile, const Workers& workers) override;
 
-    void known_clearances(const Particles& particles, std::span<float> clearances) const override;
     std::span<const std::uint32_t> find_unproven(const Particles& particles) override;
     bool is_unproven(std::size_t i, const Particles& particles) const override;
     bool is_lost(std::size_t i, const Particles& particles) const override;
@@ -44,7 +38,6 @@ class ExactCollision final : public Collision {
     void take_back(std::size_t i, Particles& particles) const override;
     bool mark_lost(std::size_t i) override { return free_places_.mark_lost(i); }
     void end_frame(const Particles& particles) override;
-    void end_frame_away() override { free_places_.end_frame_away(); }
 
     void archive(StateArchive& state, const Collider& collider) override;
 
@@ -59,8 +52,7 @@ class ExactCollision final : public Collision {
     void ask(Particles& particles, Piece& piece);
     bool meet_on_the_way(std::size_t i, const Particles& particles, Piece& piece);
     float reach_of(std::size_t i, const Particles& particles) const;
-    void remember(std::size_t i, const Particles& particles, const Contact& nearest, float reach);
-    Vec3f normal_to_own_side(std::size_t i, const Particles& particles, const Contact& nearest) const;
+    void remember(std::size_t i, const Vec3f& position, const Contact& nearest, float reach);
     void ask_for_nearest(std::span<const std::uint32_t> asked, std::span<const Vec3f> places_local,
                          float reach, Particles& particles, Piece& piece);
     SweptParticle swept(std::size_t i, const Particles& particles) const {
@@ -76,8 +68,6 @@ class ExactCollision final : public Collision {
     std::vector<Piece> pieces_;
     ParticleList unproven_;
     bool moves_ = false;
-    const SurfaceMotion* motion_ = nullptr; ///< in this frame
-    PointArrays drift_;                     ///< ColliderNow::drift; used while the surface deforms
 };
 
 } // namespace echinus

@@ -15,11 +15,6 @@ FreePlaces::FreePlaces(const ColliderNow& collider, const Particles& particles,
     }
 }
 
-void FreePlaces::begin_frame(const Collider& collider, const PointArrays* carried) {
-    frame_start_ = FrameChange(collider);
-    carried_ = carried;
-}
-
 bool FreePlaces::mark_lost(std::size_t i) {
     if (lost_[i] != 0) return false;
     lost_[i] = 1;
@@ -46,14 +41,6 @@ void FreePlaces::end_frame(const ColliderNow& collider, const Particles& particl
         lost_[i] = 0;
         return free;
     });
-}
-
-void FreePlaces::end_frame_away() {
-    for (const std::uint32_t i : exceptions_) {
-        states_[i] = State::FrameStart;
-        lost_[i] = 0;
-    }
-    exceptions_.clear();
 }
 
 void FreePlaces::archive(StateArchive& state) {

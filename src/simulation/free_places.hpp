@@ -21,19 +21,16 @@ class FreePlaces {
     /// @param passes  [count] 1 for the particles that the collider lets through, or none
     FreePlaces(const ColliderNow& collider, const Particles& particles, std::span<const std::uint8_t> passes);
 
-    /// @param carried  how the surface takes each particle along (SurfaceMotion), or null: it does not deform
-    void begin_frame(const Collider& collider, const PointArrays* carried);
+    /// @param pose  of the collider when the frame begins
+    void begin_frame(const Collider& collider, const RigidTransform& pose) {
+        frame_start_ = FrameChange(collider, pose);
+    }
 
     bool has(std::size_t i) const { return states_[i] != State::Never; }
     /// In the map's frame, to the bit what was tested. @pre has(i)
     Vec3f local(std::size_t i, const Particles& particles) const {
-        if (states_[i] != State::FrameStart) return stored_[i];
-        const Vec3f at_start = frame_start_.point_to_local(particles.frame_start[i]);
-        if (carried_ == nullptr) return at_start;
-        const Vec3f way = (*carried_)[i];
-        return at_start + Vec3f(static_cast<float>(double{way.x} / frame_start_.scale().x),
-                                static_cast<float>(double{way.y} / frame_start_.scale().y),
-                                static_cast<float>(double{way.z} / frame_start_.scale().z));
+        return states_[i] == State::FrameStart ? frame_start_.point_to_local(particles.frame_start[i])
+                                               : stored_[i];
     }
     /// The particles with another place than that at the frame's start, or none.
     std::span<const std::uint32_t> exceptions() const { return exceptions_; }
@@ -45,8 +42,6 @@ class FreePlaces {
     /// inside. A lost one keeps its place if it is `wanted_back`; otherwise it is free again once it is
     /// outside.
     void end_frame(const ColliderNow& collider, const Particles& particles, bool wanted_back);
-    /// The same beside a collider that is away: all are free.
-    void end_frame_away();
 
     void archive(StateArchive& state);
 
@@ -56,8 +51,7 @@ class FreePlaces {
     bool is_free_now(std::uint32_t i, const ColliderNow& collider, const Particles& particles,
                      bool wanted_back) const;
 
-    FrameChange frame_start_;              ///< of the map
-    const PointArrays* carried_ = nullptr; ///< in this frame
+    FrameChange frame_start_; ///< of the map
     std::vector<State> states_;
     std::vector<Vec3f> stored_;
     std::vector<std::uint8_t> lost_; ///< in this frame

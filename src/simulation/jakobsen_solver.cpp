@@ -28,7 +28,7 @@ JakobsenSolver::JakobsenSolver(Deformable deformable_in, std::vector<Collider> c
                                const SimulationOptions& options_in)
     : Solver(std::move(deformable_in), std::move(colliders_in), options_in), particles_(deformable),
       sticks_(jakobsen_sticks(deformable, options.stiffness)),
-      collisions_(deformable, colliders, particles_, options), surface_motions_(colliders.size()) {}
+      collisions_(deformable, colliders, particles_, options) {}
 
 void JakobsenSolver::step() {
     const Workers::Session session(workers_);
@@ -49,12 +49,10 @@ void JakobsenSolver::step() {
 }
 
 void JakobsenSolver::begin_frame() {
-    const Stopwatch stopwatch(profile.collision_seconds);
     particles_.frame_start = particles_.positions;
     // Velocities that callers set may be of any size.
     bounds_.require_ways(particles_, frame);
     move_colliders_on();
-    collisions_.begin_frame(colliders, surface_motions_, particles_, options);
 }
 
 void JakobsenSolver::integrate() {
@@ -72,7 +70,7 @@ void JakobsenSolver::integrate() {
 
 void JakobsenSolver::move_colliders() {
     const Stopwatch stopwatch(profile.collision_seconds);
-    collisions_.begin_substep(colliders, options.time_step);
+    collisions_.begin_frame(colliders, options.time_step);
     attachments_.follow(colliders, deforming_, 1, particles_.positions);
 }
 
@@ -83,13 +81,12 @@ void JakobsenSolver::relax_sticks() {
 
 void JakobsenSolver::collide() {
     const Stopwatch stopwatch(profile.collision_seconds);
-    collisions_.relax(particles_, profile, nullptr, workers_);
+    collisions_.relax(particles_, profile, workers_);
 }
 
 void JakobsenSolver::keep_free() {
     const Stopwatch stopwatch(profile.collision_seconds);
-    collisions_.meet_late(colliders, particles_);
-    collisions_.keep_free(particles_, profile, nullptr);
+    collisions_.keep_free(particles_, profile);
 }
 
 void JakobsenSolver::publish() {

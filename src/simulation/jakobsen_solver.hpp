@@ -37,7 +37,6 @@ class JakobsenSolver : public Solver {
     Particles particles_;
     std::vector<JakobsenStick> sticks_;
     Collisions collisions_;
-    std::vector<const SurfaceMotion*> surface_motions_; ///< by collider: null, none deforms
     Wind wind_;
 };
 

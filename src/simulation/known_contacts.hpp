@@ -16,7 +16,7 @@ namespace echinus {
 /// and a contact plane where one was near. As long as a particle stays in the ball, at its distance from the
 /// surface, the map need not be asked again: the distance changes by no more than the particle moves.
 ///
-/// Kept in the body frame, and for the present substep in the world.
+/// Kept in the body frame, and for the present frame in the world.
 struct KnownContacts {
     /// Marks a missing plane.
     static constexpr float kNoPlane = std::numeric_limits<float>::infinity();
@@ -25,11 +25,10 @@ struct KnownContacts {
     static constexpr float kNeverAsk = 1e18F;
 
     PointArrays asked_at_body, asked_at; ///< where the particle was when the map was asked
-    /// [count + PointArrays::kPadding] No surface within this distance of there; negative before the first
-    /// answer.
+    /// [count] No surface within this distance of there; negative before the first answer.
     std::vector<float> clearance;
     PointArrays normal_body, normal; ///< of the contact plane, towards where the particle has to be
-    std::vector<float> height; ///< [count + PointArrays::kPadding] of asked_at over the plane, or kNoPlane
+    std::vector<float> height;       ///< [count] of asked_at over the plane, or kNoPlane
 
     /// @param passes  [count] 1 for the particles that the collider lets through, or none
     KnownContacts(const Particles& particles, std::span<const std::uint8_t> passes);
@@ -38,8 +37,6 @@ struct KnownContacts {
 
     /// Moves along with the collider, which has moved.
     void follow(const ColliderNow& collider);
-    /// The surface deforms, no vertex by more than this: planes are forgotten, and clearances lessened.
-    void weaken(float most);
     void remember(std::size_t i, const ColliderNow& collider, const Vec3f& position, float clearance_now);
     void remember_plane(std::size_t i, const ColliderNow& collider, const Vec3f& normal_in_body,
                         float height_now);
@@ -50,20 +47,19 @@ struct KnownContacts {
 /// A contact plane is used until the particle has moved by this share of the thickness.
 inline constexpr float kPlaneReuse = 1.0F / 16;
 
-/// A list of particles with room for all of them and a vector more.
+/// A list of particles with room for all of them.
 struct ParticleList {
     std::vector<std::uint32_t> particles;
     std::size_t count = 0;
 
-    explicit ParticleList(std::size_t most) : particles(most + PointArrays::kPadding) {}
+    explicit ParticleList(std::size_t most) : particles(most) {}
     void add(std::uint32_t particle) { particles[count++] = particle; }
     std::span<const std::uint32_t> all() const { return {particles.data(), count}; }
 };
 
 /// One relaxation of the particles from first on: puts those that are known to be below the thickness over
 /// their contact plane, with friction. Lists those for which the map has to be asked, in order.
-/// @param first  a multiple of the lanes of every instruction set, as end is, if it is not the last
-/// @return how many were pushed. The same bits under every instruction set.
+/// @return how many were pushed
 std::size_t push_known(const KnownContacts& known, const ColliderNow& collider, std::size_t first,
                        std::size_t end, Particles& particles, ParticleList& to_ask) noexcept;
 

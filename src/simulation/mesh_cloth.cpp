@@ -1,8 +1,5 @@
 #include "mesh/local_frame.hpp"
 #include "simulation/cloth_surface.hpp"
-#include "simulation/constraint_order.hpp"
-#include "simulation/folds.hpp"
-#include "simulation/sticks.hpp"
 #include "simulation/validation.hpp"
 
 #include <echinus/error.hpp>
@@ -68,7 +65,6 @@ class Tailor {
         place_particles();
         weigh_particles();
         add_sticks();
-        if (options_.bending == BendingKind::Angles) add_folds();
         cloth_.faces = std::move(surface_.faces);
         return std::move(cloth_);
     }
@@ -163,12 +159,8 @@ class Tailor {
             add_stick(a, b, StickKind::Shear);
             add_stick(c, d, StickKind::Shear);
         }
-        if (options_.bending == BendingKind::Sticks)
-            for (const auto& [a, b, c, d] : others) add_stick(c, d, StickKind::Bending);
+        for (const auto& [a, b, c, d] : others) add_stick(c, d, StickKind::Bending);
         stiffen_threads();
-        order_for_relaxation(cloth_.sticks, rest_.size(), kSticksPerSlab, [](const Stick& stick) {
-            return std::array{stick.a, stick.b};
-        });
     }
 
     void stiffen_threads() {
@@ -179,17 +171,6 @@ class Tailor {
         }
         for (const auto& ends : ends_around)
             if (ends.size() == 2 && ends[0] != ends[1]) add_stick(ends[0], ends[1], StickKind::Bending);
-    }
-
-    void add_folds() {
-        for (const auto& [a, b, c, d] : surface_.hinges) {
-            const double height_sum = 2 * (area({a, b, c}) + area({a, b, d})) / distance(a, b);
-            cloth_.folds.push_back({a, b, c, d, fold_angle(rest_[a], rest_[b], rest_[c], rest_[d]),
-                                    static_cast<float>(height_sum / 2)});
-        }
-        order_for_relaxation(cloth_.folds, rest_.size(), kFoldsPerSlab, [](const Fold& fold) {
-            return std::array{fold.a, fold.b, fold.c, fold.d};
-        });
     }
 
     const TriangleMesh& mesh_;

@@ -7,8 +7,6 @@
 #include "simulation/surfaces/edge_lengths.hpp"
 #include "simulation/surfaces/model_mesh.hpp"
 
-#include <echinus/error.hpp>
-
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -48,8 +46,8 @@ NewtonSolver::NewtonSolver(Deformable deformable_in, std::vector<Collider> colli
       mean_edge_(mean_edge_of(deformable)), thickness_(*contact_options(options, mean_edge_).thickness) {
     for (std::size_t i = 0; i < deformable.particle_count(); ++i) {
         motion_.places[i] = Vec3d(deformable.positions[i]);
-        motion_.velocities[i] = (motion_.places[i] - Vec3d(deformable.previous_positions[i])) *
-                                (options.substep_count / options.time_step);
+        motion_.velocities[i] =
+            (motion_.places[i] - Vec3d(deformable.previous_positions[i])) * (1 / options.time_step);
         is_held_[i] = deformable.inverse_masses[i] == 0 ? 1 : 0;
         if (is_held_[i] != 0) motion_.velocities[i] = {};
     }
@@ -229,8 +227,7 @@ void NewtonSolver::publish() {
     for (std::size_t i = 0; i < motion_.particle_count(); ++i) {
         const Vec3d place = motion_.places[i], velocity = motion_.velocities[i];
         deformable.positions[i] = Vec3f(place);
-        deformable.previous_positions[i] =
-            Vec3f(place - velocity * (options.time_step / options.substep_count));
+        deformable.previous_positions[i] = Vec3f(place - velocity * options.time_step);
     }
     largest_speed = fastest();
     PointArrays ends;
@@ -242,8 +239,7 @@ void NewtonSolver::set_particle_velocity(std::size_t particle, const Vec3d& velo
     if (is_held_[particle] != 0) return;
     motion_.velocities[particle] = velocity;
     motion_.is_smooth[particle] = 0;
-    deformable.previous_positions[particle] =
-        Vec3f(motion_.places[particle] - velocity * (options.time_step / options.substep_count));
+    deformable.previous_positions[particle] = Vec3f(motion_.places[particle] - velocity * options.time_step);
 }
 
 /// As an acceleration in the next frame: of the velocity of the air across a face, relative to it, the rate a

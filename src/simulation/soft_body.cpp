@@ -1,6 +1,4 @@
 #include "mesh/local_frame.hpp"
-#include "simulation/constraint_order.hpp"
-#include "simulation/tetrahedra.hpp"
 #include "simulation/validation.hpp"
 
 #include <echinus/error.hpp>
@@ -51,8 +49,6 @@ class Moulder {
         place_particles();
         for (std::size_t i = 0; i < mesh_.tetrahedra.size(); ++i) add_tetrahedron(i);
         weigh_particles();
-        order_for_relaxation(body_.tetrahedra, mesh_.vertices.size(), kTetrahedraPerSlab,
-                             [](const ElasticTetrahedron& tetrahedron) { return tetrahedron.particles; });
         return std::move(body_);
     }
 
@@ -155,10 +151,6 @@ void append(Deformable& to, const Deformable& part) {
     for (Triangle face : part.faces) {
         for (std::uint32_t& corner : face) corner += first;
         to.faces.push_back(face);
-    }
-    for (Fold fold : part.folds) {
-        for (std::uint32_t* corner : {&fold.a, &fold.b, &fold.c, &fold.d}) *corner += first;
-        to.folds.push_back(fold);
     }
     for (Attachment attachment : part.attachments) {
         attachment.particle += first;

@@ -2,7 +2,6 @@
 
 #include "simulation/jakobsen_solver.hpp"
 #include "simulation/newton_solver.hpp"
-#include "simulation/relaxation_solver.hpp"
 #include "simulation/start_state.hpp"
 #include "simulation/surfaces/edge_lengths.hpp"
 #include "simulation/surfaces/elements.hpp"
@@ -83,11 +82,9 @@ Solver::Solver(Deformable deformable_in, std::vector<Collider> colliders_in,
 
 std::unique_ptr<Solver> make_solver(Deformable deformable, std::vector<Collider> colliders,
                                     const SimulationOptions& options) {
-    if (options.solver == SolverKind::Newton)
-        return std::make_unique<NewtonSolver>(std::move(deformable), std::move(colliders), options);
     if (options.solver == SolverKind::Jakobsen)
         return std::make_unique<JakobsenSolver>(std::move(deformable), std::move(colliders), options);
-    return std::make_unique<RelaxationSolver>(std::move(deformable), std::move(colliders), options);
+    return std::make_unique<NewtonSolver>(std::move(deformable), std::move(colliders), options);
 }
 
 void Solver::build_maps() {

@@ -9,15 +9,15 @@ namespace echinus {
 
 SweptParticle::SweptParticle(const ColliderNow& collider, const FreePlaces& free_places, std::size_t i,
                              const Particles& particles)
-    : now_(collider), particle_(i), position_(particles.positions[i]), step_(particles.step(i)),
+    : now_(collider), position_(particles.positions[i]), step_(particles.step(i)),
       position_local_(collider.local.point_to_local(position_)), was_free_(free_places.has(i)),
       free_local_(was_free_ ? free_places.local(i, particles) : Vec3f{}) {}
 
 /// Of a particle that was free.
 bool SweptParticle::is_free_at(const Vec3f& place_local) const {
     if (sweep(now_.map, free_local_, place_local).found()) return false;
-    // For a closed surface, a sweep without a crossing implies this too; with two sides there is no inside.
-    return now_.map.border.empty() || now_.two_sided || !contains(now_.map, place_local);
+    // For a closed surface, a sweep without a crossing implies this too.
+    return now_.map.border.empty() || !contains(now_.map, place_local);
 }
 
 bool SweptParticle::is_unproven() const {
@@ -77,10 +77,10 @@ std::optional<Placement> SweptParticle::put(const Vec3f& target_body, const Vec3
     const Vec3f target_local = now_.local.point_to_local(target);
     if (was_free_ ? !is_free_at(target_local) : contains(now_.map, target_local)) return std::nullopt;
     const Vec3f normal = now_.body.normal_to_world(normal_body);
-    const Vec3f motion = step_ - now_.motion_at(particle_, position_);
+    const Vec3f motion = step_ - now_.material.at(position_);
     const float impact = dot(motion, normal);
     const Vec3f slide = apply_friction(motion - normal * impact, normal, now_.friction * std::fabs(impact));
-    return Placement{target, now_.motion_at(particle_, target) + slide};
+    return Placement{target, now_.material.at(target) + slide};
 }
 
 std::optional<Placement> SweptParticle::taken_back() const {
@@ -92,8 +92,7 @@ std::optional<Placement> SweptParticle::taken_back() const {
     float gap = 0;
     for (int attempt = 0; attempt < 16; ++attempt) {
         const Vec3f target = moved_along + out * gap;
-        if (is_free_at(now_.local.point_to_local(target)))
-            return Placement{target, now_.motion_at(particle_, target)};
+        if (is_free_at(now_.local.point_to_local(target))) return Placement{target, now_.material.at(target)};
         gap = gap == 0 ? now_.step / 2 : 2 * gap;
     }
     return std::nullopt;

@@ -47,7 +47,6 @@ class SweptParticle {
     std::optional<Placement> put(const Vec3f& target_body, const Vec3f& normal_body) const;
 
     const ColliderNow& now_;
-    std::size_t particle_;
     Vec3f position_, step_, position_local_;
     bool was_free_;
     Vec3f free_local_;

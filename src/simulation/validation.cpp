@@ -68,13 +68,6 @@ void require_valid(const RigidTransform& pose, const std::string& owner) {
 
 void require_valid(const SimulationOptions& options) {
     require_ranges(options);
-    if ((options.solver == SolverKind::Verlet || options.solver == SolverKind::Jakobsen) &&
-        options.substep_count != 1)
-        fail("simulation option substep_count is " + std::to_string(options.substep_count) +
-             "; it must be 1 with the solvers Verlet and Jakobsen, whose sticks would become stiffer");
-    if (options.multilevel && options.solver != SolverKind::Verlet)
-        fail("simulation option multilevel needs the Verlet solver: coarse sheets would take back what "
-             "springs give; use substeps");
     if (!is_finite(options.gravity)) fail("simulation option gravity is not finite");
     if (!is_finite(options.wind)) fail("simulation option wind is not finite");
     if (options.wind != Vec3d{} && options.wind_rate == 0)
@@ -92,18 +85,6 @@ void require_valid(const SimulationOptions& options) {
 }
 
 namespace {
-
-void require_valid(const Fold& fold, std::size_t particle_count, const std::string& name) {
-    std::array corners{fold.a, fold.b, fold.c, fold.d};
-    std::sort(corners.begin(), corners.end());
-    if (corners.back() >= particle_count ||
-        std::adjacent_find(corners.begin(), corners.end()) != corners.end())
-        fail(name + " lies between particles " + std::to_string(fold.a) + ", " + std::to_string(fold.b) +
-             ", " + std::to_string(fold.c) + " and " + std::to_string(fold.d) +
-             "; it needs four different ones of " + std::to_string(particle_count));
-    if (!(std::fabs(fold.rest_angle) <= 3.1416F) || !(fold.lever > 0) || !std::isfinite(fold.lever))
-        fail(name + " has a rest angle that is not between -pi and pi, or a lever that is not positive");
-}
 
 /// As models are: distances, areas and volumes of what is so large are floats, too.
 bool is_within_reach(const Vec3f& position) {
@@ -155,8 +136,6 @@ void require_valid(const Deformable& deformable) {
             static_cast<std::size_t>(stick.kind) >= kStickKindCount)
             fail("stick " + std::to_string(i) + " has a rest length or a kind out of range");
     }
-    for (std::size_t i = 0; i < deformable.folds.size(); ++i)
-        require_valid(deformable.folds[i], count, "fold " + std::to_string(i));
     for (std::size_t i = 0; i < deformable.tetrahedra.size(); ++i)
         require_valid(deformable.tetrahedra[i], count, "tetrahedron " + std::to_string(i));
     for (std::size_t i = 0; i < deformable.faces.size(); ++i)
@@ -185,12 +164,8 @@ void require_jakobsen(const Deformable& deformable, const SimulationOptions& opt
     };
     refuse(!deformable.tetrahedra.empty(),
            "the deformable has tetrahedra, and the jakobsen solver has sticks only; leave them out");
-    refuse(!deformable.folds.empty(), "the deformable has folds, and the jakobsen solver has sticks only; "
-                                      "make the cloth with bending by sticks");
     refuse(options.surface_collision, "simulation option surface_collision is true, and under the jakobsen "
                                       "solver only particles collide; leave it out");
-    refuse(options.measure_loads,
-           "simulation option measure_loads is true, and the jakobsen solver measures none; leave it out");
     refuse(rounding_decides(deformable, options),
            "the deformable begins so far from the origin, or time_step is so small, that in a frame of the "
            "jakobsen solver gravity moves particles by little more than a float's last digit; begin nearer");
@@ -199,11 +174,7 @@ void require_jakobsen(const Deformable& deformable, const SimulationOptions& opt
 } // namespace
 
 void require_solver(const Deformable& deformable, const SimulationOptions& options) {
-    if (options.solver == SolverKind::Jakobsen) return require_jakobsen(deformable, options);
-    if (!deformable.tetrahedra.empty() && options.solver == SolverKind::Verlet)
-        fail("the deformable has tetrahedra, which need the solver Xpbd, with a substep_count of 10 or more "
-             "and "
-             "an iteration_count of 1, or Newton; set simulation option solver");
+    if (options.solver == SolverKind::Jakobsen) require_jakobsen(deformable, options);
 }
 
 namespace {
@@ -255,19 +226,13 @@ void require_valid(const Collider& collider, const SimulationOptions& options, c
     if (custom != nullptr && *custom == nullptr) fail(name + " has a custom map that is a null pointer");
     require_no_origin(origin_of(collider.map), name);
     const auto* exact = std::get_if<ExactMap>(&collider.map.kind);
-    if (options.surface_collision) {
-        if (exact == nullptr && !collider.map.surface && options.solver != SolverKind::Newton)
-            fail(name + " has a " + (custom != nullptr ? "custom" : "distance") +
-                 " map, which does not have the faces that surface_collision needs; give it an exact map, as "
-                 "its map or as map.surface beside it, or switch surface_collision off, and only particles "
-                 "collide");
-    } else if (exact != nullptr && !exact->view().border.empty() && !options.allow_open_colliders) {
+    if (!options.surface_collision && exact != nullptr && !exact->view().border.empty() &&
+        !options.allow_open_colliders)
         fail(name + " has the exact map of an open mesh, with " +
              std::to_string(exact->view().border.size()) +
              " edges at gaps, where particles get in; close the mesh (repair() mends some), use a distance "
              "map, set surface_collision, which needs no inside, or set allow_open_colliders and lose "
              "particles");
-    }
 }
 
 } // namespace

@@ -15,7 +15,7 @@ class Wind {
   public:
     /// Gives each particle a share of the wind's velocity across the faces around it, as seen from the
     /// particle: the mean over these faces.
-    /// @param wind_step  how far the air moves in one substep
+    /// @param wind_step  how far the air moves in one frame
     void blow(std::span<const Triangle> faces, const Vec3f& wind_step, float share, Particles& particles);
 
   private:

@@ -7,6 +7,7 @@
 #include "output.hpp"
 #include "recording/player_page.hpp"
 #include "recording/threads.hpp"
+#include "run_program.hpp"
 
 #include <echinus/mesh_io.hpp>
 
@@ -288,6 +289,7 @@ void write_state(const Simulation& simulation, Output& output) {
 void simulate(const SimulateArguments& arguments) {
     require_target(arguments);
     Scene scene = read_scene(arguments.scene);
+    for (const std::string& warning : scene.warnings) warn(warning);
     if (arguments.frame_limit) scene.frame_limit = *arguments.frame_limit;
     scene.simulation.thread_count = arguments.thread_count.value_or(scene.simulation.thread_count);
     choose_collision(arguments, scene);

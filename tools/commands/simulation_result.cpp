@@ -84,26 +84,16 @@ const char* kind_of(const Simulation& simulation) {
 }
 
 const char* solver_of(const SimulationOptions& options) {
-    switch (options.solver) {
-    case SolverKind::Verlet:
-        return "verlet";
-    case SolverKind::Xpbd:
-        return "xpbd";
-    case SolverKind::Newton:
-        return "newton";
-    case SolverKind::Jakobsen:
-        return "jakobsen";
-    }
-    return "";
+    return options.solver == SolverKind::Newton ? "newton" : "jakobsen";
 }
 
 Json json_of(const Vec3d& v) {
     return {v.x, v.y, v.z};
 }
 
-/// In the last frame. Null where no account was kept.
+/// In the last frame. Null under a solver that measures none.
 Json json_of_load(const Simulation& simulation, std::size_t collider) {
-    if (!simulation.options().measure_loads) return nullptr;
+    if (simulation.options().solver != SolverKind::Newton) return nullptr;
     const Load load = simulation.load_on(collider);
     return {{"force", json_of(load.force)}, {"torque", json_of(load.torque)}};
 }
@@ -201,7 +191,6 @@ Json to_json(const SimulationResult& result) {
         {"sticks", deformable.sticks.size()},
         {"tetrahedra", {{"count", deformable.tetrahedra.size()}, {"crushed", count_crushed(deformable)}}},
         {"solver", solver_of(options)},
-        {"substeps", options.substep_count},
         {"iterations", options.iteration_count},
         {"time_step", options.time_step},
         {"frames", simulation.frame()},
@@ -250,8 +239,7 @@ std::string text_of_solver(const SimulationOptions& options) {
     if (options.solver == SolverKind::Newton)
         return fmt::format("newton, at most {} steps of Newton's method per frame",
                            options.newton_step_count);
-    return fmt::format("{}, substeps x iterations per frame: {} x {}", solver_of(options),
-                       options.substep_count, options.iteration_count);
+    return fmt::format("jakobsen, {} relaxations per frame", options.iteration_count);
 }
 
 } // namespace

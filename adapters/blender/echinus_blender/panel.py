@@ -48,7 +48,7 @@ class SimulationPanel(InSidebar, bpy.types.Panel):
         layout = self.layout
         layout.use_property_split = True
         settings = context.scene.echinus
-        for name in ("steps_per_second", "thickness", "friction", "drag", "bending", "self_collision", "untangle"):
+        for name in ("steps_per_second", "thickness", "friction", "air_drag", "bending_stiffness", "self_collision", "untangle"):
             layout.prop(settings, name)
         if settings.cloth:
             layout.prop_search(settings, "pin_group", settings.cloth, "vertex_groups")

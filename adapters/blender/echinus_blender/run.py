@@ -19,12 +19,12 @@ class RunOptions:
         0: chosen by the library.
     """
 
-    steps_per_second: int = 240
+    steps_per_second: int = 60
     gravity: tuple = (0, 0, -9.81)
     thickness: float = 0
     friction: float = 0.5
-    drag: float = 0.005
-    bending: float = 0.3
+    air_drag: float = 0.5
+    bending_stiffness: float = 1e-5
     self_collision: bool = True
     untangle: bool = False
     pins_follow_body: bool = False
@@ -88,8 +88,8 @@ class Run:
                 gravity=options.gravity,
                 thickness=options.thickness or None,
                 friction=options.friction,
-                drag=options.drag,
-                stiffness=(1, 1, options.bending),
+                air_drag=options.air_drag,
+                bending_stiffness=options.bending_stiffness,
                 self_collision=options.self_collision,
                 untangle=options.untangle,
             )

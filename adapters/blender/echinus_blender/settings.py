@@ -27,7 +27,7 @@ class Settings(bpy.types.PropertyGroup):
 
     steps_per_second: bpy.props.IntProperty(
         name="Steps per Second",
-        description="More make the cloth stiffer, and take longer",
+        description="More follow fast motion more closely, and take longer",
         default=DEFAULTS.steps_per_second,
         min=24,
         soft_max=1000,
@@ -42,15 +42,20 @@ class Settings(bpy.types.PropertyGroup):
     friction: bpy.props.FloatProperty(
         name="Friction", description="Coulomb's coefficient", default=DEFAULTS.friction, min=0, soft_max=1
     )
-    drag: bpy.props.FloatProperty(
+    air_drag: bpy.props.FloatProperty(
         name="Air Drag",
-        description="The share of its speed that the cloth loses in a step",
-        default=DEFAULTS.drag,
+        description="The rate, per second, at which the cloth loses its speed in still air",
+        default=DEFAULTS.air_drag,
         min=0,
-        max=1,
+        soft_max=10,
     )
-    bending: bpy.props.FloatProperty(
-        name="Bending", description="How stiffly the cloth resists folds", default=DEFAULTS.bending, min=0, max=1
+    bending_stiffness: bpy.props.FloatProperty(
+        name="Bending Stiffness",
+        description="How stiffly the cloth resists folds, in N m: silk 1e-6, cotton 1e-5, denim 1e-4",
+        default=DEFAULTS.bending_stiffness,
+        min=0,
+        soft_max=1e-3,
+        precision=7,
     )
     self_collision: bpy.props.BoolProperty(
         name="Self Collision", description="Faces of the cloth do not meet each other", default=DEFAULTS.self_collision

@@ -22,9 +22,6 @@ static_assert(ECHINUS_STICK_SHEAR == static_cast<int>(StickKind::Shear) &&
 static_assert(sizeof(echinus_stick) == sizeof(Stick) && offsetof(echinus_stick, b) == offsetof(Stick, b) &&
               offsetof(echinus_stick, rest_length) == offsetof(Stick, rest_length) &&
               offsetof(echinus_stick, kind) == offsetof(Stick, kind));
-static_assert(sizeof(echinus_fold) == sizeof(Fold) && offsetof(echinus_fold, d) == offsetof(Fold, d) &&
-              offsetof(echinus_fold, rest_angle) == offsetof(Fold, rest_angle) &&
-              offsetof(echinus_fold, lever) == offsetof(Fold, lever));
 static_assert(sizeof(echinus_attachment) == sizeof(Attachment) &&
               offsetof(echinus_attachment, collider) == offsetof(Attachment, collider));
 static_assert(sizeof(echinus_collision_filter) == sizeof(CollisionFilter) &&
@@ -46,8 +43,6 @@ echinus_deformable_arrays arrays_of(const Deformable& deformable) {
     arrays.stick_count = deformable.sticks.size();
     arrays.faces = reinterpret_cast<const std::uint32_t*>(deformable.faces.data());
     arrays.face_count = deformable.faces.size();
-    arrays.folds = reinterpret_cast<const echinus_fold*>(deformable.folds.data());
-    arrays.fold_count = deformable.folds.size();
     arrays.attachments = reinterpret_cast<const echinus_attachment*>(deformable.attachments.data());
     arrays.attachment_count = deformable.attachments.size();
     arrays.tetrahedra = reinterpret_cast<const echinus_elastic_tetrahedron*>(deformable.tetrahedra.data());
@@ -93,7 +88,6 @@ Deformable deformable_from(const echinus_deformable_arrays& arrays) {
                               : copy_of<float>(arrays.inverse_masses, count, "inverse_masses"),
         .sticks = sticks_from(values_at(arrays.sticks, arrays.stick_count, "sticks")),
         .faces = faces_from(arrays.faces, arrays.face_count, "faces"),
-        .folds = copy_of<Fold>(arrays.folds, arrays.fold_count, "folds"),
         .attachments = copy_of<Attachment>(arrays.attachments, arrays.attachment_count, "attachments"),
         .tetrahedra = copy_of<ElasticTetrahedron>(arrays.tetrahedra, arrays.tetrahedron_count, "tetrahedra"),
         .filters = copy_of<CollisionFilter>(arrays.filters, arrays.filter_count, "filters"),
@@ -111,8 +105,6 @@ void require_own_particles(const Deformable& part, std::size_t number) {
     };
     for (const Stick& s : part.sticks)
         for (const std::uint32_t particle : {s.a, s.b}) require_there(particle, "stick");
-    for (const Fold& f : part.folds)
-        for (const std::uint32_t particle : {f.a, f.b, f.c, f.d}) require_there(particle, "fold");
     for (const Triangle& face : part.faces)
         for (const std::uint32_t particle : face) require_there(particle, "face");
     for (const Attachment& a : part.attachments) require_there(a.particle, "attachment");

@@ -15,8 +15,6 @@ struct Limits {
     double least, most;
 };
 
-static_assert(ECHINUS_SOLVER_VERLET == static_cast<int>(SolverKind::Verlet));
-static_assert(ECHINUS_SOLVER_XPBD == static_cast<int>(SolverKind::Xpbd));
 static_assert(ECHINUS_SOLVER_NEWTON == static_cast<int>(SolverKind::Newton));
 static_assert(ECHINUS_SOLVER_JAKOBSEN == static_cast<int>(SolverKind::Jakobsen));
 static_assert(ECHINUS_INSIDE_NONZERO == static_cast<int>(InsideRule::Nonzero));
@@ -35,8 +33,6 @@ static_assert(ECHINUS_ENTRY_UNORM16 == static_cast<int>(EntryFormat::Unorm16));
 static_assert(ECHINUS_POLE_X == static_cast<int>(PoleAxis::X));
 static_assert(ECHINUS_POLE_Y == static_cast<int>(PoleAxis::Y));
 static_assert(ECHINUS_POLE_Z == static_cast<int>(PoleAxis::Z));
-static_assert(ECHINUS_BENDING_ANGLES == static_cast<int>(BendingKind::Angles));
-static_assert(ECHINUS_BENDING_STICKS == static_cast<int>(BendingKind::Sticks));
 
 ECHINUS_REQUIRE_NO_PADDING_AFTER(echinus_repair_options, weld_distance);
 template <>
@@ -144,7 +140,7 @@ echinus_cloth_options as_c(const ClothOptions& options);
 /// @throws WrongArgument
 ClothOptions options_from(const echinus_cloth_options* options);
 
-ECHINUS_REQUIRE_NO_PADDING_AFTER(echinus_mesh_cloth_options, reserved);
+ECHINUS_REQUIRE_NO_PADDING_AFTER(echinus_mesh_cloth_options, attachment_count);
 /// Calls use() with each member of the structs of C and of C++, either of which may be constant.
 template <typename C, typename Options, typename Use>
 requires std::same_as<std::remove_const_t<C>, echinus_mesh_cloth_options> &&
@@ -156,8 +152,6 @@ void for_each_option(C& c, Options& o, const Use& use) {
     use("thread_edges", c.thread_edges, c.thread_edge_count, o.threads);
     use("pins", c.pins, c.pin_count, o.pins);
     use("attachments", c.attachments, c.attachment_count, o.attachments);
-    use("bending", c.bending, o.bending, BendingKind::Sticks);
-    use.reserved(c.reserved);
 }
 echinus_mesh_cloth_options as_c(const MeshClothOptions& options);
 /// @param options  may be null, for the defaults
@@ -193,14 +187,13 @@ void for_each_option(C& c, Options& o, const Use& use) {
     use("time_step", c.time_step, o.time_step, Limits{1e-9, 1e9});
     use("solver", c.solver, o.solver, SolverKind::Jakobsen);
     use("iteration_count", c.iteration_count, o.iteration_count, Limits{1, 1e6});
-    use("substep_count", c.substep_count, o.substep_count, Limits{1, 1e6});
+    use("newton_step_count", c.newton_step_count, o.newton_step_count, Limits{1, 1000});
     use("rest_frame_count", c.rest_frame_count, o.rest.frame_count, Limits{1, 1e9});
     use("rest_distance", c.rest_distance, o.rest.distance, Limits{0, 1e9});
     use("rest_speed", c.rest_speed, o.rest.speed, Limits{0, std::numeric_limits<double>::infinity()});
     use("gravity", c.gravity, o.gravity, Limits{-1e9, 1e9});
     use("drag", c.drag, o.drag, Limits{0, 1});
     use("stiffness", c.stiffness, o.stiffness, Limits{0, 1.99});
-    use("compliance", c.compliance, o.compliance, Limits{0, 1e9});
     use("thickness", c.thickness, o.thickness, Limits{0, 1e9});
     use("self_thickness", c.self_thickness, o.self_thickness, Limits{0, 1e9});
     use("friction", c.friction, o.friction, Limits{0, 1e9});
@@ -210,11 +203,7 @@ void for_each_option(C& c, Options& o, const Use& use) {
     use("surface_collision", c.surface_collision, o.surface_collision);
     use("self_collision", c.self_collision, o.self_collision);
     use("untangle", c.untangle, o.untangle);
-    use("measure_loads", c.measure_loads, o.measure_loads);
     use("thread_count", c.thread_count, o.thread_count);
-    use("multilevel", c.multilevel, o.multilevel);
-    use("newton_step_count", c.newton_step_count, o.newton_step_count, Limits{1, 1000});
-    use.reserved(c.reserved);
     use("density", c.density, o.material.density, Limits{1e-6, 1e6});
     use("stretch_stiffness", c.stretch_stiffness, o.material.stretch_stiffness, Limits{1e-6, 1e9});
     use("shear_stiffness", c.shear_stiffness, o.material.shear_stiffness, Limits{0, 1e9});

@@ -30,21 +30,11 @@ std::vector<Collider> colliders_from(const echinus_collider* first, std::size_t 
 
 echinus_simulation_profile as_c(const SimulationProfile& profile) {
     const auto& [integration_seconds, constraint_seconds, collision_seconds, query_count, contact_count,
-                 map_query_count, rescued_count, lost_count, truncated_count, searched_face_count,
-                 measured_pair_count, squeezed_count] = profile;
-    return {0,
-            integration_seconds,
-            constraint_seconds,
-            collision_seconds,
-            query_count,
-            contact_count,
-            map_query_count,
-            rescued_count,
-            lost_count,
-            truncated_count,
-            searched_face_count,
-            measured_pair_count,
-            squeezed_count};
+                 map_query_count, rescued_count, lost_count, truncated_count, measured_pair_count,
+                 squeezed_count] = profile;
+    return {0,           integration_seconds, constraint_seconds,  collision_seconds,
+            query_count, contact_count,       map_query_count,     rescued_count,
+            lost_count,  truncated_count,     measured_pair_count, squeezed_count};
 }
 
 /// @throws WrongArgument for null
@@ -227,7 +217,6 @@ echinus_status echinus_simulation_load_on(const echinus_simulation* simulation, 
     return guarded(__func__, [&] {
         const Simulation& measured = simulation_at(simulation);
         require_index(index, measured.colliders().size(), "collider");
-        require(measured.options().measure_loads, "the simulation was made without options.measure_loads");
         const Load load = measured.load_on(index);
         put_vector(load.force, &at(force, "force"));
         put_vector(load.torque, &at(torque, "torque"));

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any, Literal
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -48,18 +48,13 @@ class Deformable:
 
     @property
     def tetrahedra(self) -> NDArray[np.uint32]:
-        """(tetrahedron_count, 4) The particles of each tetrahedron, in the order of work; a read-only view."""
+        """(tetrahedron_count, 4) The particles of each tetrahedron; a read-only view."""
         return self._deformable.tetrahedra
 
     @property
     def stick_count(self) -> int:
         """Of the sticks that hold a cloth together."""
         return self._deformable.stick_count
-
-    @property
-    def fold_count(self) -> int:
-        """Of the edges at which a cloth of a mesh is kept from folding."""
-        return self._deformable.fold_count
 
     @property
     def mesh(self) -> Mesh:
@@ -126,7 +121,6 @@ def make_cloth_of_mesh(
     threads: ArrayLike = (),
     pins: ArrayLike = (),
     attachments: ArrayLike = (),
-    bending: Literal["angles", "sticks"] = "angles",
 ) -> Deformable:
     """A cloth of any shape: its particles are the mesh's vertices.
 
@@ -146,10 +140,6 @@ def make_cloth_of_mesh(
         Vertices that never move.
     attachments
         (n, 2) Vertices that move with a collider, and the number of that collider in the simulation.
-    bending
-        What keeps it from folding: the angle at each edge between two faces, or a stick between the corners
-        opposite the edge, as in the paper. Sticks take less time, resist small angles hardly at all, and do not
-        tell a fold to the front from one to the back.
 
     Raises
     ------

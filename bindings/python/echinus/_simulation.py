@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import pathlib
+import warnings
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Literal
@@ -30,16 +31,15 @@ class SimulationOptions:
     """The options of a simulation that are in force; :class:`Simulation` describes them."""
 
     time_step: float
-    solver: Literal["verlet", "xpbd", "newton", "jakobsen"]
+    solver: Literal["newton", "jakobsen"]
     iteration_count: int
-    substep_count: int
+    newton_step_count: int
     rest_frame_count: int
     rest_distance: float
     rest_speed: float
     gravity: Vector
     drag: float
     stiffness: Vector
-    compliance: Vector
     thickness: float
     self_thickness: float | None
     friction: float
@@ -49,9 +49,6 @@ class SimulationOptions:
     surface_collision: bool
     self_collision: bool
     untangle: bool
-    measure_loads: bool
-    multilevel: bool
-    newton_step_count: int
     density: float
     stretch_stiffness: float
     shear_stiffness: float
@@ -80,7 +77,7 @@ class SimulationProfile:
         Times that a particle ended a frame inside an exact map or on its other side.
     truncated_count
         With surface collision: times that a particle was stopped before a face met something.
-    searched_face_count, measured_pair_count
+    measured_pair_count
         The work of surface collision.
     squeezed_count
         Times that there was no place for a particle. Only then faces may intersect.
@@ -95,7 +92,6 @@ class SimulationProfile:
     rescued_count: int
     lost_count: int
     truncated_count: int
-    searched_face_count: int
     measured_pair_count: int
     squeezed_count: int
 
@@ -114,17 +110,17 @@ class Simulation:
     frame_limit
         Of :meth:`run`.
     time_step
-        Seconds per frame. Half of it takes twice the time and leaves a quarter of the stretch (1e-9 to 1e9 s).
+        Seconds per frame. The paper's solver needs smaller ones: half of it takes twice the time there and leaves a
+        quarter of the stretch (1e-9 to 1e9 s).
     solver
-        ``verlet``: each relaxation of a stick removes a share of its error; ``xpbd``: sticks are springs, and the
-        usual one for soft bodies; ``newton``: a continuous material in SI units; ``jakobsen``: as ``verlet``, with
-        nothing but sticks and particles that collide, as the paper has it. By default ``"verlet"``; ``"xpbd"`` with
-        ``bodies``.
+        ``newton``: a continuous material in SI units; ``jakobsen``: sticks and particles that collide, and nothing
+        else, as the paper has it.
     iteration_count
-        Relaxations per substep, each of all sticks and then of all contacts; more cost time and leave less stretch
-        (1 to 1e6). By default 10; 1 with ``xpbd``.
-    substep_count
-        ``xpbd`` only: steps that a frame is made of (1 to 1e6). By default 10.
+        ``jakobsen`` only: relaxations per frame, each of all sticks and then of all contacts; more cost time and
+        leave less stretch (1 to 1e6).
+    newton_step_count
+        ``newton`` only: at most so many steps of Newton's method in a frame; fewer where it has converged (1 to
+        1000).
     rest_frame_count
         For how many frames in a row all particles have to be slow and near one place (1 to 1e9).
     rest_distance
@@ -134,16 +130,14 @@ class Simulation:
     gravity
         Where down is. A model whose y is up needs ``[0, -9.81, 0]`` (-1e9 to 1e9 length/s^2).
     drag
-        Share of the velocity that is lost per frame; another ``time_step`` makes another drag (0 to 1).
+        ``jakobsen`` only: share of the velocity that is lost per frame; another ``time_step`` makes another drag (0
+        to 1).
     stiffness
-        ``verlet`` and ``jakobsen`` only: share of a stick's error that one relaxation removes, of structural, shear
-        and bending sticks (0 to 1.99).
-    compliance
-        ``xpbd`` only: how far a stick gives per unit of force, of structural, shear and bending sticks (0 to 1e9
-        s^2).
+        ``jakobsen`` only: share of a stick's error that one relaxation removes, of structural, shear and bending
+        sticks (0 to 1.99).
     thickness
-        Distance that particles keep from colliders, by default half the mean length of structural sticks at rest (0
-        to 1e9).
+        Distance that the deformable keeps from colliders, by default half the mean length of structural sticks at
+        rest (0 to 1e9).
     self_thickness
         Distance that layers keep from each other, with ``self_collision``; near small faces less. By default the
         thickness (0 to 1e9).
@@ -165,13 +159,6 @@ class Simulation:
     untangle
         What begins intersecting, or inside the model, is parted before the first frame instead of refused; needs
         ``surface_collision``.
-    measure_loads
-        Keep account of what bears on the colliders; takes a few percent of the time.
-    multilevel
-        ``verlet`` only: relax coarser sheets of a rectangular cloth first, so that a large one hardly stretches.
-    newton_step_count
-        ``newton`` only: at most so many steps of Newton's method in a frame; fewer where it has converged (1 to
-        1000).
     density
         ``newton`` only, as the four that follow: mass of the cloth per area (1e-6 to 1e6 kg/m^2).
     stretch_stiffness
@@ -211,17 +198,16 @@ class Simulation:
         colliders: Sequence[Collider] = (),
         *,
         frame_limit: int = 3000,
-        time_step: float = 1 / 240,
-        solver: Literal["verlet", "xpbd", "newton", "jakobsen"] | None = None,
-        iteration_count: int | None = None,
-        substep_count: int | None = None,
+        time_step: float = 1 / 60,
+        solver: Literal["newton", "jakobsen"] = "newton",
+        iteration_count: int = 10,
+        newton_step_count: int = 4,
         rest_frame_count: int = 60,
         rest_distance: float = 0.001,
         rest_speed: float = 0.1,
         gravity: Sequence[float] = (0, 0, -9.81),
         drag: float = 0.005,
         stiffness: Sequence[float] = (1, 1, 0.3),
-        compliance: Sequence[float] = (0, 1e-6, 0.0001),
         thickness: float | None = None,
         self_thickness: float | None = None,
         friction: float = 0.5,
@@ -231,9 +217,6 @@ class Simulation:
         surface_collision: bool | None = None,
         self_collision: bool | None = None,
         untangle: bool = False,
-        measure_loads: bool = False,
-        multilevel: bool = False,
-        newton_step_count: int = 4,
         density: float = 0.2,
         stretch_stiffness: float = 1000,
         shear_stiffness: float = 400,
@@ -248,12 +231,8 @@ class Simulation:
         options = dict(locals())
         of_kind("deformable", deformable, Deformable)
         models = list_of_kind("colliders", colliders, Collider)
-        xpbd = solver == "xpbd" or (solver is None and len(deformable.tetrahedra) > 0)
         can_meet = keep_free and solver != "jakobsen" and all(isinstance(c.map, ExactMap) for c in models)
         surfaces = _chosen(surface_collision, can_meet)
-        options["solver"] = "xpbd" if solver is None and xpbd else solver
-        options["iteration_count"] = (1 if xpbd else 10) if iteration_count is None else iteration_count
-        options["substep_count"] = (10 if xpbd else 1) if substep_count is None else substep_count
         options["surface_collision"] = surfaces
         options["self_collision"] = _chosen(self_collision, surfaces)
         self._frame_limit = whole("frame_limit", frame_limit)
@@ -272,7 +251,6 @@ class Simulation:
         self_collision: bool | None = None,
         untangle: bool | None = None,
         allow_open_colliders: bool = False,
-        measure_loads: bool | None = None,
         threads: int = 0,
     ) -> Simulation:
         """The beginning of a scene.
@@ -296,8 +274,6 @@ class Simulation:
         allow_open_colliders
             Accept a model that is not closed, for which nothing is promised. Surface collision needs no such
             permission.
-        measure_loads
-            Keep account for :meth:`load_on`, in place of the scene's key.
         threads
             For the build of maps. 0: all cores.
 
@@ -313,6 +289,8 @@ class Simulation:
         else:
             parsed = _core.Scene.read(path_of(scene))
             folder = pathlib.Path(path_of(scene)).parent
+        for warning in parsed.warnings:
+            warnings.warn(warning, stacklevel=2)
         models = _one_for_each(model, parsed.collider_count)
         if surface_collision is None and any(isinstance(given, DistanceMap) for given in models):
             surface_collision = False
@@ -321,7 +299,6 @@ class Simulation:
         parsed.self_collision = surfaces and flag("self_collision", _chosen(self_collision, parsed.self_collision))
         parsed.untangle = surfaces and flag("untangle", _chosen(untangle, parsed.untangle))
         parsed.allow_open_colliders = flag("allow_open_colliders", allow_open_colliders)
-        parsed.measure_loads = flag("measure_loads", _chosen(measure_loads, parsed.measure_loads))
         threads = threads_of(threads)
         folders = [model_folders] if isinstance(model_folders, (str, bytes, os.PathLike)) else model_folders
         files = _Files([*(pathlib.Path(path_of(each)) for each in folders), folder, folder / ".." / "models", pathlib.Path("models")])
@@ -370,13 +347,13 @@ class Simulation:
 
     @property
     def previous_positions(self) -> NDArray[np.float32]:
-        """(particle_count, 3) The same, one substep before."""
+        """(particle_count, 3) The same, one frame before."""
         return self._simulation.previous_positions
 
     @property
     def velocities(self) -> NDArray[np.float32]:
         """(particle_count, 3) Units per second, a new array."""
-        rate = np.float32(self.options.substep_count / self.options.time_step)
+        rate = np.float32(1 / self.options.time_step)
         return (self.positions - self.previous_positions) * rate
 
     @property
@@ -386,7 +363,7 @@ class Simulation:
 
     @property
     def tetrahedra(self) -> NDArray[np.uint32]:
-        """(tetrahedron_count, 4) The particles of each tetrahedron, in the order of work; a read-only view."""
+        """(tetrahedron_count, 4) The particles of each tetrahedron; a read-only view."""
         return self._simulation.tetrahedra
 
     @property
@@ -426,8 +403,9 @@ class Simulation:
 
     @property
     def residual(self) -> tuple[float, float]:
-        """What relaxations left undone: how far structural sticks are from their length at rest, as a share of it;
-        root mean square and largest.
+        """How far structural sticks are from their length at rest, as a share of it; root mean square and largest.
+
+        Under ``jakobsen`` it is what relaxations have left undone.
         """
         return self._simulation.residual()
 
@@ -502,13 +480,8 @@ class Simulation:
     def load_on(self, collider: int) -> Load:
         """What the deformables put on a model in the last frame, as its mean over the frame; 0 before the first.
 
-        With friction, and with what particles that are attached to it pull. A host that moves a rigid body by it, and
+        By contact and friction, in N and N m; always 0 under ``jakobsen``. A host that moves a rigid body by it, and
         then the model by the body, exchanges momentum with the deformables.
-
-        Raises
-        ------
-        ValueError
-            The simulation was made without ``measure_loads``.
         """
         return Load(*self._simulation.load_on(index("collider", collider)))
 

@@ -44,12 +44,11 @@ void for_each_part(const Use& use) {
     use(&Deformable::inverse_masses);
     use(&Deformable::sticks);
     use(&Deformable::faces);
-    use(&Deformable::folds);
     use(&Deformable::attachments);
     use(&Deformable::tetrahedra);
     use(&Deformable::filters);
 }
-constexpr std::size_t kPartCount = 9;
+constexpr std::size_t kPartCount = 8;
 
 py::tuple parts_of(const Deformable& deformable) {
     py::tuple parts(kPartCount);
@@ -107,7 +106,6 @@ void bind_deformables(py::module_& module) {
             "tetrahedra",
             [](const py::object& self) { return view_of(self.cast<const Deformable&>().tetrahedra, self); })
         .def_property_readonly("stick_count", [](const Deformable& d) { return d.sticks.size(); })
-        .def_property_readonly("fold_count", [](const Deformable& d) { return d.folds.size(); })
         .def("parts", parts_of);
     module.def("deformable_of", deformable_of);
     module.def("make_cloth", sheet);

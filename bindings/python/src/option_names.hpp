@@ -80,7 +80,6 @@ void for_each_option(Options& o, const Use& use) {
     use("threads", o.threads);
     use("pins", o.pins);
     use("attachments", o.attachments);
-    use("bending", o.bending, {"angles", "sticks"});
 }
 
 /// Calls use() with the name in Python and the member of each option.
@@ -102,16 +101,15 @@ template <typename Options, typename Use>
 requires std::same_as<std::remove_const_t<Options>, SimulationOptions>
 void for_each_option(Options& o, const Use& use) {
     use("time_step", o.time_step);
-    use.unless_none("solver", o.solver, {"verlet", "xpbd", "newton", "jakobsen"});
-    use.unless_none("iteration_count", o.iteration_count);
-    use.unless_none("substep_count", o.substep_count);
+    use("solver", o.solver, {"newton", "jakobsen"});
+    use("iteration_count", o.iteration_count);
+    use("newton_step_count", o.newton_step_count);
     use("rest_frame_count", o.rest.frame_count);
     use("rest_distance", o.rest.distance);
     use("rest_speed", o.rest.speed);
     use("gravity", o.gravity);
     use("drag", o.drag);
     use("stiffness", o.stiffness);
-    use("compliance", o.compliance);
     use("thickness", o.thickness);
     use("self_thickness", o.self_thickness);
     use("friction", o.friction);
@@ -121,10 +119,7 @@ void for_each_option(Options& o, const Use& use) {
     use.unless_none("surface_collision", o.surface_collision);
     use.unless_none("self_collision", o.self_collision);
     use("untangle", o.untangle);
-    use("measure_loads", o.measure_loads);
     use("threads", o.thread_count);
-    use("multilevel", o.multilevel);
-    use("newton_step_count", o.newton_step_count);
     use("density", o.material.density);
     use("stretch_stiffness", o.material.stretch_stiffness);
     use("shear_stiffness", o.material.shear_stiffness);

@@ -119,7 +119,6 @@ void bind_options(py::class_<Scene>& scene) {
     flag("self_collision", &SimulationOptions::self_collision);
     flag("untangle", &SimulationOptions::untangle);
     flag("allow_open_colliders", &SimulationOptions::allow_open_colliders);
-    flag("measure_loads", &SimulationOptions::measure_loads);
 }
 
 } // namespace
@@ -140,6 +139,7 @@ void bind_scenes(py::module_& module) {
         .def_property_readonly("rest_file", rest_file)
         .def_property_readonly("body_files", body_files)
         .def_readonly("frame_limit", &Scene::frame_limit)
+        .def_readonly("warnings", &Scene::warnings)
         .def("make_model", make_model)
         .def("repair", repair_model)
         .def("build_map", build_model_map)

@@ -65,7 +65,6 @@ py::dict describe(const SimulationProfile& p) {
     result["rescued_count"] = p.rescued_count;
     result["lost_count"] = p.lost_count;
     result["truncated_count"] = p.truncated_count;
-    result["searched_face_count"] = p.searched_face_count;
     result["measured_pair_count"] = p.measured_pair_count;
     result["squeezed_count"] = p.squeezed_count;
     return result;
@@ -95,8 +94,6 @@ std::size_t collider_at(const SharedSimulation& shared, std::int64_t index) {
 /// (force, torque)
 py::tuple load_on(SharedSimulation& shared, std::int64_t index) {
     const std::size_t collider = collider_at(shared, index);
-    if (!shared.unchanging().options().measure_loads)
-        throw py::value_error("the simulation was made without measure_loads");
     const Load load = shared.alone([&](Simulation& s) { return s.load_on(collider); });
     return py::make_tuple(to_python(load.force), to_python(load.torque));
 }

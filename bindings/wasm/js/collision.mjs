@@ -2,7 +2,7 @@ import { Handle } from './core.mjs';
 import { EchinusError, refuse, requireCount, requireFinite, withDefaults } from './errors.mjs';
 import { requireMap } from './maps.mjs';
 import { asIndices, asVertices } from './mesh.mjs';
-import { collider, deformableArrays, pose, simulationOptions, simulationProfile } from './structs.mjs';
+import { collider, deformableArrays, pose, simulationOptions, simulationProfile, words } from './structs.mjs';
 
 const NO_TURN = [1, 0, 0, 0];
 
@@ -111,11 +111,13 @@ function requireRotation(rotation) {
 }
 
 /**
- * A simulation without sticks, in which particles only collide. Its unit of time is one step of the other solver, however
- * long that is. Surfaces need more relaxations than particles, each of which has one nearest point.
+ * A simulation in which particles only collide: without sticks, or with faces of next to no stiffness. Its unit of time is
+ * one step of the other solver, however long that is.
  */
 const options = ({ thickness, friction, surfaces, selfCollision, allowOpenColliders, untangle }) => ({
-    timeStep: 1, gravity: [0, 0, 0], drag: 0, iterationCount: surfaces ? 4 : 1,
+    solver: words.solver.indexOf(surfaces ? 'newton' : 'jakobsen'), timeStep: 1, gravity: [0, 0, 0],
+    drag: 0, iterationCount: 1,
+    stretchStiffness: 1e-6, shearStiffness: 0, bendingStiffness: 0, damping: 0, airDrag: 0,
     bound: 1e30, // where the other solver sends its particles is not ours to judge
     thickness, friction, surfaceCollision: surfaces, selfCollision, allowOpenColliders, untangle,
 });

@@ -549,8 +549,8 @@ export interface SceneDescription {
         angular_velocity?: Vec3;
         // Options: thickness. By bindings/generate_options from bindings/options.toml: edit that.
         /**
-         * Distance that particles keep from colliders, by default half the mean length of structural sticks at rest (0
-         * to 1e9). Default: half the spacing.
+         * Distance that the deformable keeps from colliders, by default half the mean length of structural sticks at
+         * rest (0 to 1e9). Default: half the spacing.
          */
         thickness?: number;
         /**
@@ -567,28 +567,30 @@ export interface SceneDescription {
         /** Without a cloth, in place of its own. */
         thickness?: number;
         self_thickness?: number;
-        // Options: verlet. By bindings/generate_options from bindings/options.toml: edit that.
-        /** Stiffness between neighbours of a row or column, or along an edge of a mesh: against stretching; 0 to 1.99. Default: 1. */
+        // Options: jakobsen. By bindings/generate_options from bindings/options.toml: edit that.
+        /** `jakobsen` only: stiffness between neighbours of a row or column, or along an edge of a mesh: against stretching; 0 to 1.99. Default: 1. */
         structural?: number;
-        /** Stiffness between neighbours along a diagonal; 0 to 1.99. Default: 1. */
+        /** `jakobsen` only: stiffness between neighbours along a diagonal; 0 to 1.99. Default: 1. */
         shear?: number;
-        /** Stiffness between every second particle of a row or column, or of the angles of a mesh: against folding; 0 to 1.99. Default: 0.3. */
+        /** `jakobsen` only: stiffness between every second particle of a row or column, or across an edge between two faces: against folding; 0 to 1.99. Default: 0.3. */
         bending?: number;
         // End of options.
-        compliance?: {
-            // Options: xpbd. By bindings/generate_options from bindings/options.toml: edit that.
-            /** Between neighbours of a row or column; 0 does not give; 0 to 1e9. Default: 0. */
-            structural?: number;
-            /** Between neighbours along a diagonal; 0 to 1e9. Default: 1e-6. */
-            shear?: number;
-            /** Between every second particle of a row or column. for the angles of a mesh: the angle times the mean height of the two faces over their common edge is the way that is given; 0 to 1e9. Default: 0.0001. */
-            bending?: number;
-            // End of options.
-        };
+        // Options: newton. By bindings/generate_options from bindings/options.toml: edit that.
+        /** `newton` only, as the four that follow: mass of the cloth per area (1e-6 to 1e6 kg/m^2). Default: 0.2. */
+        density?: number;
+        /** Force per width against stretching of warp and weft (1e-6 to 1e9 N/m). Default: 1000. */
+        stretch_stiffness?: number;
+        /** Force per width against shear between them (0 to 1e9 N/m). Default: 400. */
+        shear_stiffness?: number;
+        /** Moment per width and curvature against folding (0 to 1e6 N m). Default: 1e-5. */
+        bending_stiffness?: number;
+        /** Viscosity of the cloth over its stiffness (0 to 1e6 s). Default: 0.01. */
+        damping?: number;
+        // End of options.
         // Options: material. By bindings/generate_options from bindings/options.toml: edit that.
         /**
-         * Share of the velocity that is lost per frame; another `time_step` makes another drag (0 to 1). Default:
-         * 0.005.
+         * `jakobsen` only: share of the velocity that is lost per frame; another `time_step` makes another drag (0 to
+         * 1). Default: 0.005.
          */
         drag?: number;
         /** Coulomb's coefficient between cloth and model; 0 is ice (0 to 1e9). Default: 0.5. */
@@ -616,41 +618,31 @@ export interface SceneDescription {
     // End of options.
     // Options: solver. By bindings/generate_options from bindings/options.toml: edit that.
     /**
-     * Seconds per frame. Half of it takes twice the time and leaves a quarter of the stretch (1e-9 to 1e9 s). Default:
-     * 1/240.
+     * Seconds per frame. The paper's solver needs smaller ones: half of it takes twice the time there and leaves a
+     * quarter of the stretch (1e-9 to 1e9 s). Default: 1/60; 1/240 under `jakobsen`.
      */
     time_step?: number;
     /**
-     * `verlet`: each relaxation of a stick removes a share of its error; `xpbd`: sticks are springs, and the usual one
-     * for soft bodies; `newton`: a continuous material in SI units; `jakobsen`: as `verlet`, with nothing but sticks
-     * and particles that collide, as the paper has it. Default: `"verlet"`; `"xpbd"` with `bodies`.
+     * `newton`: a continuous material in SI units; `jakobsen`: sticks and particles that collide, and nothing else, as
+     * the paper has it. Default: `"newton"`.
      */
-    solver?: 'verlet' | 'xpbd' | 'newton' | 'jakobsen';
+    solver?: 'newton' | 'jakobsen';
     /**
-     * Relaxations per substep, each of all sticks and then of all contacts; more cost time and leave less stretch (1 to
-     * 1e6). Default: 10; 1 with `xpbd`.
+     * `jakobsen` only: relaxations per frame, each of all sticks and then of all contacts; more cost time and leave
+     * less stretch (1 to 1e6). Default: 10.
      */
     iterations?: number;
-    /** `xpbd` only: steps that a frame is made of (1 to 1e6). Default: 10. */
-    substeps?: number;
-    /**
-     * Where down is. A model whose y is up needs `[0, -9.81, 0]` (-1e9 to 1e9 length/s^2). Default: `[0, 0, -9.81]`.
-     */
-    gravity?: Vec3;
-    /** Keep account of what bears on the colliders; takes a few percent of the time. Default: false. */
-    measure_loads?: boolean;
-    /** Threads that compute a frame; 0: all cores. The same bits with any number (0 to 1024). Default: 1. */
-    thread_count?: number;
-    /**
-     * `verlet` only: relax coarser sheets of a rectangular cloth first, so that a large one hardly stretches. Default:
-     * false.
-     */
-    multilevel?: boolean;
     /**
      * `newton` only: at most so many steps of Newton's method in a frame; fewer where it has converged (1 to 1000).
      * Default: 4.
      */
     newton_steps?: number;
+    /**
+     * Where down is. A model whose y is up needs `[0, -9.81, 0]` (-1e9 to 1e9 length/s^2). Default: `[0, 0, -9.81]`.
+     */
+    gravity?: Vec3;
+    /** Threads that compute a frame; 0: all cores. The same bits with any number (0 to 1024). Default: 1. */
+    thread_count?: number;
     /**
      * `newton` only: a step of Newton's method that moves no particle farther than this has converged; share of the
      * mean edge length (0 to 1). Default: 0.0001.
@@ -743,12 +735,6 @@ export interface MeshCloth {
     // Options: mesh_cloth. By bindings/generate_options from bindings/options.toml: edit that.
     /** Factor of size, before the pose (1e-9 to 1e9). Default: 1. */
     scale?: number;
-    /**
-     * What keeps it from folding: the angle at each edge between two faces, or a stick between the corners opposite the
-     * edge, as in the paper. Sticks take less time, resist small angles hardly at all, and do not tell a fold to the
-     * front from one to the back. Default: `"angles"`.
-     */
-    bending?: 'angles' | 'sticks';
     // End of options.
     pins?: VertexChoice;
     attachments?: VertexChoice | readonly Attachments[];
@@ -791,7 +777,7 @@ export class Simulation extends Deletable {
     readonly particleCount: number;
     /** [3 particleCount] a view of the simulation's own memory: get it anew each time, as with a buffer. Read only. */
     readonly positions: Float32Array;
-    /** [3 particleCount] one substep ago. */
+    /** [3 particleCount] one frame ago. */
     readonly previousPositions: Float32Array;
     /** [3 face_count] particles; a copy, constant over time. */
     readonly faces: Uint32Array;
@@ -802,8 +788,8 @@ export class Simulation extends Deletable {
     /** 16 hexadecimal digits of all positions' bits. */
     readonly stateHash: string;
     /**
-     * What relaxations have left undone at the end of the last frame: of the structural sticks, how far their lengths are
-     * from those at rest, as a share of these; 0 without such sticks. Takes about a third of a relaxation.
+     * Of the structural sticks, how far their lengths are from those at rest at the end of the last frame, as a share of
+     * these; 0 without such sticks. Under `jakobsen` it is what relaxations have left undone.
      */
     readonly residual: { readonly rootMeanSquare: number; readonly largest: number };
     /** Since the simulation began. */
@@ -840,8 +826,8 @@ export class Simulation extends Deletable {
 
     /**
      * Gives a particle a velocity, units per second. To drag with the pointer, set it before each step, for the grabbed
-     * particle and its near neighbours, to (target of the pointer - present position) / (about 5 time steps): sticks
-     * pull at them and the collider stops them, so none of them is dragged into the model.
+     * particle and its near neighbours, to (target of the pointer - present position) / (about 5 time steps): the cloth
+     * pulls at them and the collider stops them, so none of them is dragged into the model.
      */
     setParticleVelocity(particle: number, velocity: Vec3): void;
     /**
@@ -871,8 +857,7 @@ export interface SimulationProfile {
     lostCount: number;
     /** With surface_collision: how often a particle ended a frame short of where it was going, so that nothing meets. */
     truncatedCount: number;
-    /** Work of surface_collision: faces whose neighbourhood was searched, and pairs of their parts that were measured. */
-    searchedFaceCount: number;
+    /** Work of surface_collision: pairs of parts of faces that were measured. */
     measuredPairCount: number;
     /** How often no place for a particle was proven. Only then may faces intersect: 0. */
     squeezedCount: number;

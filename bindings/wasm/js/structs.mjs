@@ -52,38 +52,35 @@ export const collider = { bytes: 136, members: {
     size: [0, 'Uint32'], map: [4, 'Uint32'], pose: [8, pose], scale: [64, 'Float64', 3],
     linearVelocity: [88, 'Float64', 3], angularVelocity: [112, 'Float64', 3],
 } };
-export const deformableArrays = { bytes: 68, members: {
+export const deformableArrays = { bytes: 60, members: {
     size: [0, 'Uint32'], particleCount: [4, 'Uint32'], positions: [8, 'Uint32'], previousPositions: [12, 'Uint32'],
     inverseMasses: [16, 'Uint32'], sticks: [20, 'Uint32'], stickCount: [24, 'Uint32'], faces: [28, 'Uint32'],
-    faceCount: [32, 'Uint32'], folds: [36, 'Uint32'], foldCount: [40, 'Uint32'], attachments: [44, 'Uint32'],
-    attachmentCount: [48, 'Uint32'], tetrahedra: [52, 'Uint32'], tetrahedronCount: [56, 'Uint32'],
-    filters: [60, 'Uint32'], filterCount: [64, 'Uint32'],
+    faceCount: [32, 'Uint32'], attachments: [36, 'Uint32'], attachmentCount: [40, 'Uint32'], tetrahedra: [44, 'Uint32'],
+    tetrahedronCount: [48, 'Uint32'], filters: [52, 'Uint32'], filterCount: [56, 'Uint32'],
 } };
-export const simulationOptions = { bytes: 296, members: {
+export const simulationOptions = { bytes: 248, members: {
     size: [0, 'Uint32'], timeStep: [8, 'Float64'], solver: [16, 'Int32'], iterationCount: [20, 'Uint32'],
-    substepCount: [24, 'Uint32'], restFrameCount: [28, 'Uint32'], restDistance: [32, 'Float64'],
+    newtonStepCount: [24, 'Uint32'], restFrameCount: [28, 'Uint32'], restDistance: [32, 'Float64'],
     restSpeed: [40, 'Float64'], gravity: [48, 'Float64', 3], drag: [72, 'Float64'], stiffness: [80, 'Float64', 3],
-    compliance: [104, 'Float64', 3], thickness: [128, 'Float64'], selfThickness: [136, 'Float64'],
-    friction: [144, 'Float64'], bound: [152, 'Float64'], keepFree: [160, 'Int32'], allowOpenColliders: [164, 'Int32'],
-    surfaceCollision: [168, 'Int32'], selfCollision: [172, 'Int32'], untangle: [176, 'Int32'],
-    measureLoads: [180, 'Int32'], threadCount: [184, 'BigUint64'], multilevel: [192, 'BigUint64'],
-    newtonStepCount: [200, 'Uint32'], density: [208, 'Float64'], stretchStiffness: [216, 'Float64'],
-    shearStiffness: [224, 'Float64'], bendingStiffness: [232, 'Float64'], damping: [240, 'Float64'],
-    newtonTolerance: [248, 'Float64'], airDrag: [256, 'Float64'], wind: [264, 'Float64', 3], windRate: [288, 'Float64'],
+    thickness: [104, 'Float64'], selfThickness: [112, 'Float64'], friction: [120, 'Float64'], bound: [128, 'Float64'],
+    keepFree: [136, 'Int32'], allowOpenColliders: [140, 'Int32'], surfaceCollision: [144, 'Int32'],
+    selfCollision: [148, 'Int32'], untangle: [152, 'Int32'], threadCount: [156, 'Uint32'], density: [160, 'Float64'],
+    stretchStiffness: [168, 'Float64'], shearStiffness: [176, 'Float64'], bendingStiffness: [184, 'Float64'],
+    damping: [192, 'Float64'], newtonTolerance: [200, 'Float64'], airDrag: [208, 'Float64'], wind: [216, 'Float64', 3],
+    windRate: [240, 'Float64'],
 } };
-export const simulationProfile = { bytes: 104, members: {
+export const simulationProfile = { bytes: 96, members: {
     size: [0, 'Uint32'], integrationSeconds: [8, 'Float64'], constraintSeconds: [16, 'Float64'],
     collisionSeconds: [24, 'Float64'], queryCount: [32, 'BigUint64'], contactCount: [40, 'BigUint64'],
     mapQueryCount: [48, 'BigUint64'], rescuedCount: [56, 'BigUint64'], lostCount: [64, 'BigUint64'],
-    truncatedCount: [72, 'BigUint64'], searchedFaceCount: [80, 'BigUint64'], measuredPairCount: [88, 'BigUint64'],
-    squeezedCount: [96, 'BigUint64'],
+    truncatedCount: [72, 'BigUint64'], measuredPairCount: [80, 'BigUint64'], squeezedCount: [88, 'BigUint64'],
 } };
 
 /** Of choices, in the order of their numbers. */
 export const words = {
-    solver: ['verlet', 'xpbd', 'newton', 'jakobsen'], rule: ['nonzero', 'parity'], centre: ['sphere', 'search'],
+    solver: ['newton', 'jakobsen'], rule: ['nonzero', 'parity'], centre: ['sphere', 'search'],
     grid: ['spherical', 'octahedral', 'cube', 'ellipsoidal'], correction: ['none', 'paper', 'signed'],
-    entry: ['float32', 'unorm16'], pole: ['x', 'y', 'z'], bending: ['angles', 'sticks'],
+    entry: ['float32', 'unorm16'], pole: ['x', 'y', 'z'],
 };
 
 /** Words for the steps of a repair that need no guess, and the options that ask for them. */

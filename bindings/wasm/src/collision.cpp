@@ -1,5 +1,5 @@
-// Collision for particles that another solver moves: a simulation without sticks, whose particles are sent
-// where that solver has put them.
+// Collision for particles that another solver moves: a simulation of which nothing holds together, whose
+// particles are sent where that solver has put them.
 
 #include "interface.hpp"
 
@@ -31,7 +31,7 @@ struct Collision {
 constexpr double kFarthest = 1e12;
 
 /// Moves a particle by its other solver's step. It does not follow one that has exploded.
-/// @return where the simulation's integration puts it, to the bit
+/// @return where the simulation's integration puts it without contact
 Vec3f send(Simulation& simulation, std::size_t particle, const Vec3f& from, const Vec3f& to) {
     Vec3d way = Vec3d(to) - Vec3d(from);
     if (!(dot(way, way) <= kFarthest * kFarthest)) way = {}; // NaN, too
@@ -53,11 +53,19 @@ Vec3d without_approach(const Simulation& simulation, const Vec3f& position, Vec3
     return motion;
 }
 
+/// A correction is longer than this. Particles are sent to the bit by the jakobsen solver; under the newton
+/// solver, where surfaces collide, a step converges to a tolerance.
+float least_correction(const SimulationOptions& options) {
+    constexpr float kInThicknesses = 1e-3F;
+    return options.surface_collision ? kInThicknesses * static_cast<float>(*options.thickness) : 0;
+}
+
 void note_corrections(Collision& collision, double seconds) {
     const Deformable& now = collision.simulation.deformable();
+    const float least = least_correction(collision.simulation.options());
     collision.corrected_count = 0;
     for (std::uint32_t i = 0; i < collision.sent.size(); ++i) {
-        const bool is_corrected = now.positions[i] != collision.sent[i];
+        const bool is_corrected = length(now.positions[i] - collision.sent[i]) > least;
         const bool is_impact = is_corrected && collision.was_corrected[i] == 0;
         collision.was_corrected[i] = is_corrected ? 1 : 0;
         if (!is_corrected) continue;
@@ -79,7 +87,7 @@ void correct(Collision& collision, double seconds) {
 
 } // namespace
 
-/// @param simulation  without sticks, with a time step of kStep; taken over, also by a call that fails
+/// @param simulation  without a material, with a time step of kStep; taken over, also by a call that fails
 ECHINUS_EXPORT(wasm_collision_make)
 echinus_status wasm_collision_make(echinus_simulation* simulation, Collision** collision) {
     std::unique_ptr<echinus_simulation> owned(simulation);

@@ -81,7 +81,7 @@ static_assert(sizeof(echinus_collider) == 136 && offsetof(echinus_collider, size
               offsetof(echinus_collider, map) == 4 && offsetof(echinus_collider, pose) == 8 &&
               offsetof(echinus_collider, scale) == 64 && offsetof(echinus_collider, linear_velocity) == 88 &&
               offsetof(echinus_collider, angular_velocity) == 112);
-static_assert(sizeof(echinus_deformable_arrays) == 68 && offsetof(echinus_deformable_arrays, size) == 0 &&
+static_assert(sizeof(echinus_deformable_arrays) == 60 && offsetof(echinus_deformable_arrays, size) == 0 &&
               offsetof(echinus_deformable_arrays, particle_count) == 4 &&
               offsetof(echinus_deformable_arrays, positions) == 8 &&
               offsetof(echinus_deformable_arrays, previous_positions) == 12 &&
@@ -90,50 +90,43 @@ static_assert(sizeof(echinus_deformable_arrays) == 68 && offsetof(echinus_deform
               offsetof(echinus_deformable_arrays, stick_count) == 24 &&
               offsetof(echinus_deformable_arrays, faces) == 28 &&
               offsetof(echinus_deformable_arrays, face_count) == 32 &&
-              offsetof(echinus_deformable_arrays, folds) == 36 &&
-              offsetof(echinus_deformable_arrays, fold_count) == 40 &&
-              offsetof(echinus_deformable_arrays, attachments) == 44 &&
-              offsetof(echinus_deformable_arrays, attachment_count) == 48 &&
-              offsetof(echinus_deformable_arrays, tetrahedra) == 52 &&
-              offsetof(echinus_deformable_arrays, tetrahedron_count) == 56 &&
-              offsetof(echinus_deformable_arrays, filters) == 60 &&
-              offsetof(echinus_deformable_arrays, filter_count) == 64);
-static_assert(sizeof(echinus_simulation_options) == 296 && offsetof(echinus_simulation_options, size) == 0 &&
+              offsetof(echinus_deformable_arrays, attachments) == 36 &&
+              offsetof(echinus_deformable_arrays, attachment_count) == 40 &&
+              offsetof(echinus_deformable_arrays, tetrahedra) == 44 &&
+              offsetof(echinus_deformable_arrays, tetrahedron_count) == 48 &&
+              offsetof(echinus_deformable_arrays, filters) == 52 &&
+              offsetof(echinus_deformable_arrays, filter_count) == 56);
+static_assert(sizeof(echinus_simulation_options) == 248 && offsetof(echinus_simulation_options, size) == 0 &&
               offsetof(echinus_simulation_options, time_step) == 8 &&
               offsetof(echinus_simulation_options, solver) == 16 &&
               offsetof(echinus_simulation_options, iteration_count) == 20 &&
-              offsetof(echinus_simulation_options, substep_count) == 24 &&
+              offsetof(echinus_simulation_options, newton_step_count) == 24 &&
               offsetof(echinus_simulation_options, rest_frame_count) == 28 &&
               offsetof(echinus_simulation_options, rest_distance) == 32 &&
               offsetof(echinus_simulation_options, rest_speed) == 40 &&
               offsetof(echinus_simulation_options, gravity) == 48 &&
               offsetof(echinus_simulation_options, drag) == 72 &&
               offsetof(echinus_simulation_options, stiffness) == 80 &&
-              offsetof(echinus_simulation_options, compliance) == 104 &&
-              offsetof(echinus_simulation_options, thickness) == 128 &&
-              offsetof(echinus_simulation_options, self_thickness) == 136 &&
-              offsetof(echinus_simulation_options, friction) == 144 &&
-              offsetof(echinus_simulation_options, bound) == 152 &&
-              offsetof(echinus_simulation_options, keep_free) == 160 &&
-              offsetof(echinus_simulation_options, allow_open_colliders) == 164 &&
-              offsetof(echinus_simulation_options, surface_collision) == 168 &&
-              offsetof(echinus_simulation_options, self_collision) == 172 &&
-              offsetof(echinus_simulation_options, untangle) == 176 &&
-              offsetof(echinus_simulation_options, measure_loads) == 180 &&
-              offsetof(echinus_simulation_options, thread_count) == 184 &&
-              offsetof(echinus_simulation_options, multilevel) == 192 &&
-              offsetof(echinus_simulation_options, newton_step_count) == 200 &&
-              offsetof(echinus_simulation_options, reserved) == 204 &&
-              offsetof(echinus_simulation_options, density) == 208 &&
-              offsetof(echinus_simulation_options, stretch_stiffness) == 216 &&
-              offsetof(echinus_simulation_options, shear_stiffness) == 224 &&
-              offsetof(echinus_simulation_options, bending_stiffness) == 232 &&
-              offsetof(echinus_simulation_options, damping) == 240 &&
-              offsetof(echinus_simulation_options, newton_tolerance) == 248 &&
-              offsetof(echinus_simulation_options, air_drag) == 256 &&
-              offsetof(echinus_simulation_options, wind) == 264 &&
-              offsetof(echinus_simulation_options, wind_rate) == 288);
-static_assert(sizeof(echinus_simulation_profile) == 104 && offsetof(echinus_simulation_profile, size) == 0 &&
+              offsetof(echinus_simulation_options, thickness) == 104 &&
+              offsetof(echinus_simulation_options, self_thickness) == 112 &&
+              offsetof(echinus_simulation_options, friction) == 120 &&
+              offsetof(echinus_simulation_options, bound) == 128 &&
+              offsetof(echinus_simulation_options, keep_free) == 136 &&
+              offsetof(echinus_simulation_options, allow_open_colliders) == 140 &&
+              offsetof(echinus_simulation_options, surface_collision) == 144 &&
+              offsetof(echinus_simulation_options, self_collision) == 148 &&
+              offsetof(echinus_simulation_options, untangle) == 152 &&
+              offsetof(echinus_simulation_options, thread_count) == 156 &&
+              offsetof(echinus_simulation_options, density) == 160 &&
+              offsetof(echinus_simulation_options, stretch_stiffness) == 168 &&
+              offsetof(echinus_simulation_options, shear_stiffness) == 176 &&
+              offsetof(echinus_simulation_options, bending_stiffness) == 184 &&
+              offsetof(echinus_simulation_options, damping) == 192 &&
+              offsetof(echinus_simulation_options, newton_tolerance) == 200 &&
+              offsetof(echinus_simulation_options, air_drag) == 208 &&
+              offsetof(echinus_simulation_options, wind) == 216 &&
+              offsetof(echinus_simulation_options, wind_rate) == 240);
+static_assert(sizeof(echinus_simulation_profile) == 96 && offsetof(echinus_simulation_profile, size) == 0 &&
               offsetof(echinus_simulation_profile, integration_seconds) == 8 &&
               offsetof(echinus_simulation_profile, constraint_seconds) == 16 &&
               offsetof(echinus_simulation_profile, collision_seconds) == 24 &&
@@ -143,6 +136,5 @@ static_assert(sizeof(echinus_simulation_profile) == 104 && offsetof(echinus_simu
               offsetof(echinus_simulation_profile, rescued_count) == 56 &&
               offsetof(echinus_simulation_profile, lost_count) == 64 &&
               offsetof(echinus_simulation_profile, truncated_count) == 72 &&
-              offsetof(echinus_simulation_profile, searched_face_count) == 80 &&
-              offsetof(echinus_simulation_profile, measured_pair_count) == 88 &&
-              offsetof(echinus_simulation_profile, squeezed_count) == 96);
+              offsetof(echinus_simulation_profile, measured_pair_count) == 80 &&
+              offsetof(echinus_simulation_profile, squeezed_count) == 88);

@@ -48,13 +48,12 @@ class Hasher {
 
 std::uint64_t hash_of(const SimulationOptions& options) {
     Hasher hasher;
-    hasher.add(options.solver, options.time_step, options.iteration_count, options.substep_count,
-               options.gravity, options.drag, options.stiffness, options.compliance,
-               options.thickness.value_or(-1), options.friction, options.rest.distance, options.rest.speed,
-               options.rest.frame_count, options.keep_free, options.allow_open_colliders,
+    hasher.add(options.solver, options.time_step, options.iteration_count, options.gravity, options.drag,
+               options.stiffness, options.thickness.value_or(-1), options.friction, options.rest.distance,
+               options.rest.speed, options.rest.frame_count, options.keep_free, options.allow_open_colliders,
                options.surface_collision, options.self_collision, options.self_thickness.value_or(-1),
-               options.measure_loads, options.bound);
-    hasher.add(options.multilevel, options.wind, options.wind_rate);
+               options.bound);
+    hasher.add(options.wind, options.wind_rate);
     if (options.solver == SolverKind::Newton)
         hasher.add(options.material.density, options.material.stretch_stiffness,
                    options.material.shear_stiffness, options.material.bending_stiffness,
@@ -69,8 +68,6 @@ std::uint64_t hash_of(const Deformable& deformable, std::uint64_t start_hash) {
     hasher.add_all(deformable.inverse_masses);
     hasher.add_all(deformable.faces);
     for (const Stick& stick : deformable.sticks) hasher.add(stick.a, stick.b, stick.rest_length, stick.kind);
-    for (const Fold& fold : deformable.folds)
-        hasher.add(fold.a, fold.b, fold.c, fold.d, fold.rest_angle, fold.lever);
     for (const Attachment& attachment : deformable.attachments)
         hasher.add(attachment.particle, attachment.collider);
     std::set<std::pair<std::uint32_t, std::uint32_t>> filters; // in any order, some perhaps twice

@@ -1,6 +1,6 @@
 // What belongs to the state of a simulation: all that a frame reads before it writes it.
 
-#include "simulation/relaxation_solver.hpp"
+#include "simulation/solver.hpp"
 
 #include <variant>
 
@@ -19,10 +19,9 @@ void Solver::archive_counts(StateArchive& state) {
     state.value(frame);
     state.flag(has_blown);
     state.value(largest_speed);
-    for (std::uint64_t* count :
-         {&profile.query_count, &profile.contact_count, &profile.map_query_count, &profile.rescued_count,
-          &profile.lost_count, &profile.truncated_count, &profile.searched_face_count,
-          &profile.measured_pair_count, &profile.squeezed_count})
+    for (std::uint64_t* count : {&profile.query_count, &profile.contact_count, &profile.map_query_count,
+                                 &profile.rescued_count, &profile.lost_count, &profile.truncated_count,
+                                 &profile.measured_pair_count, &profile.squeezed_count})
         state.value(*count);
 }
 
@@ -48,24 +47,6 @@ void Solver::archive_colliders(StateArchive& state) {
         }
         if (deforms) deforming_[c]->archive(state, collider);
     }
-}
-
-void RelaxationSolver::archive(StateArchive& state) {
-    archive_counts(state);
-    state.points(particles_.positions);
-    state.points(particles_.previous);
-    state.points(particles_.remainders);
-    state.points(particles_.previous_remainders);
-    rest_.archive(state);
-    if (stretched_part_) stretched_part_->archive(state, sticks_.count());
-    if (gentle_sticks_) gentle_sticks_->archive(state);
-    if (meter_) meter_->archive(state);
-    if (energy_limit_) energy_limit_->archive(state);
-    archive_colliders(state);
-    attachments_.archive(state, deforming_);
-    collisions_.archive(state, colliders);
-    if (surfaces_) surfaces_->archive(state);
-    if (state.reads()) publish();
 }
 
 } // namespace echinus

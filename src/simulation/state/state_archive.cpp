@@ -22,18 +22,9 @@ void StateArchive::pose(RigidTransform& v) {
     require(std::abs(size_sq - 1) <= kUnitTolerance && is_finite(v.translation));
 }
 
-void StateArchive::padded(std::vector<float>& values) {
-    require(values.size() >= PointArrays::kPadding);
-    std::array<float, PointArrays::kPadding> padding{};
-    const auto begin = values.end() - static_cast<std::ptrdiff_t>(padding.size());
-    std::copy(begin, values.end(), padding.begin());
-    array(values);
-    std::copy(padding.begin(), padding.end(), begin);
-}
-
 void StateArchive::points(PointArrays& values) {
     for (std::vector<float>* c : {&values.x, &values.y, &values.z}) {
-        padded(*c);
+        array(*c);
         require(std::all_of(c->begin(), c->end(), [](float number) { return std::isfinite(number); }));
     }
 }

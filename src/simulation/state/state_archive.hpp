@@ -85,8 +85,6 @@ class StateArchive {
         transfer(values.data(), values.size());
         for (const T& v : values) require(is_number(v));
     }
-    /// The same, with PointArrays::kPadding numbers at the end that kernels read: these stay as they are.
-    void padded(std::vector<float>& values);
     /// The same of finite points.
     void points(PointArrays& values);
     /// An array of any size.

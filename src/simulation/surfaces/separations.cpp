@@ -8,7 +8,6 @@
 // After foreach_target.h, which includes this file once for each instruction set.
 #include "simd/dispatch.hpp"
 #include "simd/lanes-inl.hpp"
-#include "simulation/gathered_points-inl.hpp"
 #include "simulation/surfaces/separation.hpp"
 
 #include <algorithm>
@@ -57,6 +56,15 @@ struct PairBatch {
 HWY_BEFORE_NAMESPACE();
 namespace echinus {
 namespace HWY_NAMESPACE {
+
+/// @pre there are at most 2^31 points
+HWY_INLINE IntLanes load_indices(const std::uint32_t* from) {
+    return hn::BitCast(kInt, hn::LoadU(hn::RebindToUnsigned<Ints>(), from));
+}
+HWY_INLINE PointLanes gather(const PointArrays& points, IntLanes at) {
+    return {hn::GatherIndex(kFloat, points.x.data(), at), hn::GatherIndex(kFloat, points.y.data(), at),
+            hn::GatherIndex(kFloat, points.z.data(), at)};
+}
 
 HWY_INLINE FloatLanes at_least(FloatLanes a, FloatLanes b) {
     return hn::IfThenElse(a < b, b, a);

@@ -44,7 +44,7 @@ function rowsOf({ model, figures, frames, cloth_faces, machine, version }: Descr
         ['its faces', count(model.faces)],
         ['faces of the cloth', count(cloth_faces)],
         ['push-out', figures.map_kind === 'exact' ? 'nearest, exact map' : 'radial, the paper\u2019s map'],
-        ['solver', figures.solver + (figures.solver === 'newton' ? '' : `, ${figures.substeps} \u00d7 ${figures.iterations}`)],
+        ['solver', figures.solver + (figures.solver === 'newton' ? '' : `, ${figures.iterations} relaxations`)],
         ['time steps of', milliseconds(1e3 * figures.time_step)],
         ['at rest after', rest === null ? 'not yet' : `${count(rest)} steps`],
         ['recorded frames', count(frames.length)],

@@ -70,7 +70,6 @@ export interface Figures {
     particles: number;
     sticks: number;
     solver: string;
-    substeps: number;
     iterations: number;
     time_step: number;
     frames: number;

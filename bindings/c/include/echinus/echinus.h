@@ -917,15 +917,6 @@ typedef struct echinus_stick {
     uint8_t reserved[3];
 } echinus_stick;
 
-/// Keeps two faces (a, b, c) and (b, a, d) at an angle: 0 where they lie flat, positive where they are turned
-/// towards each other's fronts.
-typedef struct echinus_fold {
-    uint32_t a, b; ///< the common edge
-    uint32_t c, d; ///< the corners opposite it
-    float rest_angle;
-    float lever; ///< mean height of c and d over the edge, or another length by which errors are weighed
-} echinus_fold;
-
 /// Fixes a particle to a collider of a simulation.
 typedef struct echinus_attachment {
     uint32_t particle;
@@ -939,8 +930,8 @@ typedef struct echinus_collision_filter {
     uint32_t collider; ///< index in the simulation's colliders
 } echinus_collision_filter;
 
-/// Elastic material between four particles, for the solver XPBD; echinus_deformable_soft_body() computes
-/// them.
+/// Elastic material between four particles, for ECHINUS_SOLVER_NEWTON; echinus_deformable_soft_body()
+/// computes them.
 typedef struct echinus_elastic_tetrahedron {
     uint32_t particles[4];
     float gradients[3][3]; ///< at rest: rows of the inverse of the matrix with columns b - a, c - a and d - a
@@ -957,17 +948,15 @@ typedef struct echinus_deformable_arrays {
     size_t size;
     size_t particle_count;
     const float* positions;          ///< [3 particle_count]
-    const float* previous_positions; ///< [3 particle_count] one substep ago; NULL: at rest
+    const float* previous_positions; ///< [3 particle_count] one frame ago; NULL: at rest
     const float* inverse_masses;     ///< [particle_count] 0 for a pinned particle; NULL: 1 for all
-    const echinus_stick* sticks;     ///< in the order in which they are relaxed
+    const echinus_stick* sticks; ///< in the order in which they are relaxed; of Newton's cloth only threads
     size_t stick_count;
     const uint32_t* faces; ///< [3 face_count]
     size_t face_count;
-    const echinus_fold* folds;
-    size_t fold_count;
     const echinus_attachment* attachments; ///< of pinned particles, at most one of each
     size_t attachment_count;
-    const echinus_elastic_tetrahedron* tetrahedra; ///< in the order in which they are relaxed
+    const echinus_elastic_tetrahedron* tetrahedra;
     size_t tetrahedron_count;
     const echinus_collision_filter* filters;
     size_t filter_count;
@@ -1006,12 +995,6 @@ ECHINUS_API void echinus_cloth_options_init(echinus_cloth_options* options, size
 ECHINUS_API echinus_status echinus_deformable_cloth(const echinus_cloth_options* options,
                                                     echinus_deformable** deformable);
 
-/// What keeps a cloth of a mesh from folding sharply.
-typedef enum echinus_bending_kind {
-    ECHINUS_BENDING_ANGLES = 0, ///< a fold at each edge between two faces
-    ECHINUS_BENDING_STICKS = 1  ///< a stick between the two corners opposite such an edge
-} echinus_bending_kind;
-
 // Options: mesh_cloth. By bindings/generate_options from bindings/options.toml: edit that.
 typedef struct echinus_mesh_cloth_options {
     size_t size;
@@ -1033,12 +1016,6 @@ typedef struct echinus_mesh_cloth_options {
     /// simulation
     const echinus_attachment* attachments;
     size_t attachment_count;
-    /// What keeps it from folding: the angle at each edge between two faces, or a stick between the corners
-    /// opposite the edge, as in the paper. Sticks take less time, resist small angles hardly at all, and do
-    /// not tell a fold to the front from one to the back
-    echinus_bending_kind bending;
-    /// 0
-    uint32_t reserved;
 } echinus_mesh_cloth_options;
 
 ECHINUS_API void echinus_mesh_cloth_options_init(echinus_mesh_cloth_options* options, size_t size);
@@ -1080,7 +1057,6 @@ ECHINUS_API void echinus_soft_body_options_init(echinus_soft_body_options* optio
 // End of options.
 
 /// A body at rest, whose particles are the vertices of the tetrahedra and whose faces their boundary.
-/// Simulate it with ECHINUS_SOLVER_XPBD, one iteration and ten substeps or more.
 /// @param options  or NULL for the defaults
 /// @return ECHINUS_INVALID_MESH when no tetrahedron uses a vertex; ECHINUS_INVALID_OPTIONS
 ECHINUS_API echinus_status echinus_deformable_soft_body(const echinus_tetrahedra* body,
@@ -1088,14 +1064,14 @@ ECHINUS_API echinus_status echinus_deformable_soft_body(const echinus_tetrahedra
                                                         echinus_deformable** deformable);
 
 /// Several deformables as one, the particles of one part after those of the other: with self_collision they
-/// collide with each other. Masses stay as they are, so they must be in one unit.
+/// collide with each other.
 /// @param parts  [part_count]
 /// @return ECHINUS_INVALID_OPTIONS, naming the part, when one names a particle that it does not have
 ECHINUS_API echinus_status echinus_deformable_combine(const echinus_deformable* const* parts,
                                                       size_t part_count, echinus_deformable** deformable);
 
-/// The same deformable with all masses times a factor, finite and positive. A cloth's particles have the mean
-/// mass 1, so its mass / its particle_count brings it to the unit of that mass.
+/// The same deformable with all masses times a factor, finite and positive. ECHINUS_SOLVER_NEWTON weighs
+/// cloth by its density in the options of the simulation.
 ECHINUS_API echinus_status echinus_deformable_with_masses_times(const echinus_deformable* deformable,
                                                                 double factor, echinus_deformable** result);
 
@@ -1113,12 +1089,10 @@ ECHINUS_API void echinus_deformable_destroy(echinus_deformable* deformable);
 
 // ---- Simulations ----
 
-/// How sticks hold their particles.
+/// How a deformable moves.
 typedef enum echinus_solver {
-    ECHINUS_SOLVER_VERLET = 0,  ///< each relaxation removes a share of the error
-    ECHINUS_SOLVER_XPBD = 1,    ///< as springs
-    ECHINUS_SOLVER_NEWTON = 2,  ///< as a continuous material in SI units
-    ECHINUS_SOLVER_JAKOBSEN = 3 ///< as ECHINUS_SOLVER_VERLET, by the paper: sticks and particles, no surfaces
+    ECHINUS_SOLVER_NEWTON = 0,  ///< as a continuous material in SI units
+    ECHINUS_SOLVER_JAKOBSEN = 1 ///< by the paper: sticks and particles that collide, no surfaces
 } echinus_solver;
 
 /// In place of a thickness: it is chosen by the library.
@@ -1128,17 +1102,18 @@ typedef enum echinus_solver {
 /// What each member costs: SimulationOptions in simulation.hpp.
 typedef struct echinus_simulation_options {
     size_t size;
-    /// Seconds per frame. Half of it takes twice the time and leaves a quarter of the stretch (1e-9 to 1e9 s)
+    /// Seconds per frame. The paper's solver needs smaller ones: half of it takes twice the time there and
+    /// leaves a quarter of the stretch (1e-9 to 1e9 s)
     double time_step;
-    /// Verlet: each relaxation of a stick removes a share of its error; xpbd: sticks are springs, and the
-    /// usual one for soft bodies; newton: a continuous material in SI units; jakobsen: as verlet, with
-    /// nothing but sticks and particles that collide, as the paper has it
+    /// Newton: a continuous material in SI units; jakobsen: sticks and particles that collide, and nothing
+    /// else, as the paper has it
     echinus_solver solver;
-    /// Relaxations per substep, each of all sticks and then of all contacts; more cost time and leave less
-    /// stretch (1 to 1e6)
+    /// Jakobsen only: relaxations per frame, each of all sticks and then of all contacts; more cost time and
+    /// leave less stretch (1 to 1e6)
     uint32_t iteration_count;
-    /// Xpbd only: steps that a frame is made of (1 to 1e6)
-    uint32_t substep_count;
+    /// Newton only: at most so many steps of Newton's method in a frame; fewer where it has converged (1 to
+    /// 1000)
+    uint32_t newton_step_count;
     /// For how many frames in a row all particles have to be slow and near one place (1 to 1e9)
     uint32_t rest_frame_count;
     /// How far a particle at rest may be from its place (0 to 1e9)
@@ -1147,16 +1122,14 @@ typedef struct echinus_simulation_options {
     double rest_speed;
     /// Where down is. A model whose y is up needs [0, -9.81, 0] (-1e9 to 1e9 length/s^2)
     double gravity[3];
-    /// Share of the velocity that is lost per frame; another time_step makes another drag (0 to 1)
+    /// Jakobsen only: share of the velocity that is lost per frame; another time_step makes another drag (0
+    /// to 1)
     double drag;
-    /// Verlet and jakobsen only: share of a stick's error that one relaxation removes, of structural, shear
-    /// and bending sticks (0 to 1.99)
+    /// Jakobsen only: share of a stick's error that one relaxation removes, of structural, shear and bending
+    /// sticks (0 to 1.99)
     double stiffness[ECHINUS_STICK_KIND_COUNT];
-    /// Xpbd only: how far a stick gives per unit of force, of structural, shear and bending sticks (0 to 1e9
-    /// s^2)
-    double compliance[ECHINUS_STICK_KIND_COUNT];
-    /// Distance that particles keep from colliders, by default half the mean length of structural sticks at
-    /// rest (0 to 1e9), or ECHINUS_THICKNESS_CHOSEN
+    /// Distance that the deformable keeps from colliders, by default half the mean length of structural
+    /// sticks at rest (0 to 1e9), or ECHINUS_THICKNESS_CHOSEN
     double thickness;
     /// Distance that layers keep from each other, with self_collision; near small faces less. By default the
     /// thickness (0 to 1e9), or ECHINUS_THICKNESS_CHOSEN
@@ -1179,17 +1152,8 @@ typedef struct echinus_simulation_options {
     /// What begins intersecting, or inside the model, is parted before the first frame instead of refused;
     /// needs surface_collision
     int32_t untangle;
-    /// Keep account of what bears on the colliders; takes a few percent of the time
-    int32_t measure_loads;
     /// Threads that compute a frame; 0: all cores. The same bits with any number (0 to 1024)
-    uint64_t thread_count;
-    /// Verlet only: relax coarser sheets of a rectangular cloth first, so that a large one hardly stretches
-    uint64_t multilevel;
-    /// Newton only: at most so many steps of Newton's method in a frame; fewer where it has converged (1 to
-    /// 1000)
-    uint32_t newton_step_count;
-    /// 0
-    int32_t reserved;
+    uint32_t thread_count;
     /// Newton only, as the four that follow: mass of the cloth per area (1e-6 to 1e6 kg/m^2)
     double density;
     /// Force per width against stretching of warp and weft (1e-6 to 1e9 N/m)
@@ -1265,7 +1229,7 @@ ECHINUS_API echinus_status echinus_simulation_read(const echinus_simulation* sim
 ECHINUS_API uint32_t echinus_simulation_frame(const echinus_simulation* simulation);
 /// Has the rest condition held for the required number of frames?
 ECHINUS_API int32_t echinus_simulation_at_rest(const echinus_simulation* simulation);
-/// Speed of the fastest particle in the last substep, units per second; infinite before the first.
+/// Speed of the fastest particle in the last frame, units per second; infinite before the first.
 ECHINUS_API double echinus_simulation_largest_speed(const echinus_simulation* simulation);
 /// XXH64 of the bits of all positions and previous positions.
 ECHINUS_API uint64_t echinus_simulation_state_hash(const echinus_simulation* simulation);
@@ -1282,7 +1246,6 @@ typedef struct echinus_simulation_profile {
     uint64_t rescued_count;
     uint64_t lost_count;
     uint64_t truncated_count;
-    uint64_t searched_face_count;
     uint64_t measured_pair_count;
     uint64_t squeezed_count;
 } echinus_simulation_profile;
@@ -1291,10 +1254,9 @@ typedef struct echinus_simulation_profile {
 ECHINUS_API echinus_status echinus_simulation_read_profile(const echinus_simulation* simulation,
                                                            echinus_simulation_profile* profile);
 
-/// What relaxations have left undone at the end of the last frame: of the structural sticks, how far their
-/// lengths are from those at rest, as a share of these; 0.01 is 1 %, and 0 where there are no such sticks.
-/// Large residuals call for more relaxations, for smaller steps or for options.multilevel. Takes about a
-/// third of a relaxation.
+/// Of the structural sticks, how far their lengths are from those at rest at the end of the last frame, as a
+/// share of these; 0.01 is 1 %, and 0 where there are no such sticks. Under ECHINUS_SOLVER_JAKOBSEN it is
+/// what relaxations have left undone.
 /// @param root_mean_square, largest  [1] out
 ECHINUS_API echinus_status echinus_simulation_residual(const echinus_simulation* simulation,
                                                        double* root_mean_square, double* largest);
@@ -1348,11 +1310,10 @@ ECHINUS_API echinus_status echinus_simulation_set_collider_vertices(echinus_simu
 ECHINUS_API echinus_status echinus_simulation_set_collider_cache(echinus_simulation* simulation, size_t index,
                                                                  const echinus_vertex_cache* cache);
 
-/// What the deformable put on a collider in the last frame, as its mean over the frame, with masses in the
-/// unit in which inverse masses are their inverses; 0 before the first.
-/// @param force   [3] out
-/// @param torque  [3] out, about where the pose's translation was when the frame began
-/// @return ECHINUS_INVALID_ARGUMENT also without options.measure_loads
+/// What the deformable put on a collider in the last frame by contact and friction, as its mean over the
+/// frame; 0 before the first, and always under ECHINUS_SOLVER_JAKOBSEN.
+/// @param force   [3] out, N
+/// @param torque  [3] out, N m, about where the pose's translation was when the frame began
 ECHINUS_API echinus_status echinus_simulation_load_on(const echinus_simulation* simulation, size_t index,
                                                       double* force, double* torque);
 
