@@ -1,7 +1,6 @@
 #include "exact_map/query/stretched_contact.hpp"
 #include "simulation/contact_response.hpp"
 #include "simulation/known_contacts.hpp"
-#include "support/instruction_sets.hpp"
 #include "support/random_points.hpp"
 
 #include <gtest/gtest.h>
@@ -183,44 +182,7 @@ KnownContacts known_of(const Particles& particles, const ColliderNow& collider, 
     return known;
 }
 
-std::vector<Vec3f> as_points(const PointArrays& arrays, std::size_t count) {
-    std::vector<Vec3f> points(count);
-    arrays.store(points);
-    return points;
-}
-
-void jiggle(PointArrays& points, std::size_t count, float half_width, test::Random& random) {
-    for (std::size_t i = 0; i < count; ++i) points.set(i, points[i] + test::in_cube(random, half_width));
-}
-
 } // namespace
-
-TEST(KnownContacts, PushAndListTheSameParticlesUnderEachInstructionSet) {
-    const Collider box{.map = ExactMap::build(make_box({1, 1, 1}, 2)),
-                       .pose = {Rotation::about({1, 2, 3}, 1), {0.1, 0.2, 0.3}}};
-    const RigidTransform before{Rotation::about({1, 2, 3}, 0.9), {0.1, 0.2, 0.31}};
-    const ColliderNow now(box, before, {.thickness = kWideThickness});
-    for (std::size_t count = 1; count < 200; count += 11) {
-        test::Random random(static_cast<unsigned>(count));
-        Particles start = particles_around({}, count, 0.8F, random);
-        const KnownContacts known = known_of(start, now, 0.1F);
-        jiggle(start.positions, count, 0.001F, random);
-        std::vector<std::vector<Vec3f>> results;
-        std::vector<std::vector<std::uint32_t>> lists;
-        test::under_each_instruction_set([&](std::string_view) {
-            Particles particles = start;
-            ParticleList list(2 * count);
-            const std::size_t pushed = push_known(known, now, 0, particles.count(), particles, list);
-            EXPECT_LE(pushed + list.count, count);
-            list_unproven(known, now, particles.positions, start.positions, list);
-            results.push_back(as_points(particles.positions, count));
-            results.push_back(as_points(particles.previous, count));
-            lists.emplace_back(list.all().begin(), list.all().end());
-        });
-        for (std::size_t k = 0; k < results.size(); ++k) EXPECT_EQ(results[k], results[k % 2]);
-        for (const auto& list : lists) EXPECT_EQ(list, lists.front());
-    }
-}
 
 TEST(KnownContacts, PutAParticleAtTheThicknessOverItsPlane) {
     const Collider box{.map = ExactMap::build(make_box({1, 1, 1}))};

@@ -33,13 +33,6 @@ SimulationOptions surfaces(bool self = false) {
     return {.thickness = kSheetThickness, .surface_collision = true, .self_collision = self};
 }
 
-SimulationOptions newton_surfaces() {
-    SimulationOptions options = surfaces(true);
-    options.solver = SolverKind::Newton;
-    options.time_step = 1.0 / 60;
-    return options;
-}
-
 /// Where a point of the mesh is at a time.
 using Deformation = std::function<Vec3d(const Vec3d& point, double seconds)>;
 
@@ -86,10 +79,8 @@ void expect_nothing_meets_while(const TriangleMesh& model, const Deformation& de
     EXPECT_EQ(most_pairs(simulation, model, deform, frame_count), 0u);
     EXPECT_EQ(simulation.profile().squeezed_count, 0u);
     EXPECT_EQ(simulation.profile().lost_count, 0u);
-    EXPECT_GT(simulation.profile().contact_count, 1000u);
-    if (options.solver == SolverKind::Newton) {
-        EXPECT_LT(simulation.residual().largest, 0.1); // beside corners that are held
-    }
+    EXPECT_GT(simulation.profile().contact_count, 100u);
+    EXPECT_LT(simulation.residual().largest, 0.1); // beside corners that are held
 }
 
 void expect_nothing_meets_while(const TriangleMesh& model, const Deformation& deform, Deformable sheet,
@@ -101,19 +92,19 @@ void expect_nothing_meets_while(const TriangleMesh& model, const Deformation& de
 } // namespace
 
 TEST(DeformingCollider, KeepsASheetOffABallThatBreathes) {
-    expect_nothing_meets_while(make_sphere(0.4, 24, 12), breathe, sheet_at(0.43, 1.2, 19), 240);
-    expect_nothing_meets_while(make_sphere(0.4, 24, 12), breathe, sheet_at(0.43, 1.2, 19), 240,
+    expect_nothing_meets_while(make_sphere(0.4, 24, 12), breathe, sheet_at(0.43, 1.2, 19), 60);
+    expect_nothing_meets_while(make_sphere(0.4, 24, 12), breathe, sheet_at(0.43, 1.2, 19), 60,
                                surfaces(true));
 }
 
 TEST(DeformingCollider, KeepsASheetOffAPlateThatBends) {
-    expect_nothing_meets_while(make_box({1.4, 0.5, 0.06}, 10), bend, sheet_at(0.06, 1, 17), 200);
-    expect_nothing_meets_while(make_box({1.4, 0.5, 0.06}, 10), bend, sheet_at(0.06, 1, 17), 200,
+    expect_nothing_meets_while(make_box({1.4, 0.5, 0.06}, 10), bend, sheet_at(0.06, 1, 17), 50);
+    expect_nothing_meets_while(make_box({1.4, 0.5, 0.06}, 10), bend, sheet_at(0.06, 1, 17), 50,
                                surfaces(true));
 }
 
 TEST(DeformingCollider, KeepsASheetOnAFloorWithRunningWaves) {
-    expect_nothing_meets_while(make_box({1.6, 1.2, 0.1}, 16), wave, sheet_at(0.08, 0.9, 19), 200,
+    expect_nothing_meets_while(make_box({1.6, 1.2, 0.1}, 16), wave, sheet_at(0.08, 0.9, 19), 50,
                                surfaces(true));
 }
 
@@ -122,42 +113,16 @@ TEST(DeformingCollider, KeepsAPinnedSheetOffABallThatGrowsIntoIt) {
     for (const std::size_t corner : {0u, 16u, 272u, 288u}) sheet.inverse_masses[corner] = 0;
     expect_nothing_meets_while(
         make_sphere(0.4, 24, 12), [](const Vec3d& p, double t) { return p * (1 + std::min(t, 0.5)); }, sheet,
-        240);
+        60);
 }
 
 TEST(DeformingCollider, MayMoveAndBeScaledMeanwhile) {
-    constexpr double kSeconds = 2.0 / 3;
     const TriangleMesh ball = make_sphere(1, 24, 12);
     Collider collider{.map = ExactMap::build(ball), .pose = {Rotation::about({1, 0, 0}, 0.3), {0, 0, -0.1}}};
     collider.scale = {0.4, -0.5, 0.35};
     collider.linear_velocity = {0.2, 0, 0.1};
     collider.angular_velocity = {0, 0, 3};
-    for (const SimulationOptions& options : {surfaces(), newton_surfaces()})
-        expect_nothing_meets_while(ball, breathe, sheet_at(0.4, 1.2, 19),
-                                   static_cast<int>(kSeconds / options.time_step), collider, options);
-}
-
-TEST(DeformingCollider, IsFollowedByContinuousMaterial) {
-    const SimulationOptions options = newton_surfaces();
-    expect_nothing_meets_while(make_sphere(0.4, 24, 12), breathe, sheet_at(0.43, 1.2, 19), 60, options);
-    expect_nothing_meets_while(make_box({1.4, 0.5, 0.06}, 10), bend, sheet_at(0.06, 1, 17), 50, options);
-    expect_nothing_meets_while(make_box({1.6, 1.2, 0.1}, 16), wave, sheet_at(0.08, 0.9, 19), 50, options);
-}
-
-TEST(DeformingCollider, PushesHeldContinuousMaterial) {
-    Deformable sheet = sheet_at(0.45, 1, 17);
-    for (const std::size_t corner : {0u, 16u, 272u, 288u}) sheet.inverse_masses[corner] = 0;
-    expect_nothing_meets_while(
-        make_sphere(0.4, 24, 12), [](const Vec3d& p, double t) { return p * (1 + std::min(t, 0.5)); }, sheet,
-        60, newton_surfaces());
-}
-
-TEST(DeformingCollider, IsFollowedInSmallSteps) {
-    SimulationOptions options = surfaces();
-    options.solver = SolverKind::Xpbd;
-    options.iteration_count = 1;
-    options.substep_count = 10;
-    expect_nothing_meets_while(make_sphere(0.4, 24, 12), breathe, sheet_at(0.43, 1.2, 19), 160, options);
+    expect_nothing_meets_while(ball, breathe, sheet_at(0.4, 1.2, 19), 40, collider, surfaces());
 }
 
 /// Ten thicknesses and more in a frame, which part of the body is beside: it is led as a whole.
@@ -167,33 +132,28 @@ TEST(DeformingCollider, LeadsABodyAsAPoseDoesWhenAllVerticesJump) {
         make_soft_body(make_solid_box({0.2, 0.2, 0.2}, {4, 4, 4}),
                        {.young_modulus = 1e4, .damping = 0.02, .pose = {{}, {0, 0, 0.41}}});
     SimulationOptions options = surfaces(true);
-    options.solver = SolverKind::Xpbd;
-    options.iteration_count = 1;
-    options.substep_count = 10;
     options.gravity = {0, 0, 0};
-    const auto jump = [](const Vec3d& p, double t) { return p + Vec3d{0, 0, t > 0.01 ? 0.1 : 0}; };
-    const auto grow = [](const Vec3d& p, double t) { return p * (t > 0.01 ? 1.3 : 1.0); };
+    const auto jump = [](const Vec3d& p, double t) { return p + Vec3d{0, 0, t > 0.04 ? 0.1 : 0}; };
+    const auto grow = [](const Vec3d& p, double t) { return p * (t > 0.04 ? 1.3 : 1.0); };
     for (const Deformation& deform : {Deformation(jump), Deformation(grow)}) {
         Simulation simulation(body, colliders_of({ball}), options);
         EXPECT_EQ(most_pairs(simulation, ball, deform, 9), 0u);
         EXPECT_EQ(simulation.profile().squeezed_count, 0u);
         EXPECT_EQ(simulation.profile().lost_count, 0u);
-        Simulation continuous(sheet_at(0.31, 1, 17), colliders_of({ball}), newton_surfaces());
-        EXPECT_EQ(most_pairs(continuous, ball, deform, 9), 0u);
-        EXPECT_EQ(continuous.profile().squeezed_count, 0u);
+        Simulation cloth(sheet_at(0.31, 1, 17), colliders_of({ball}), surfaces(true));
+        EXPECT_EQ(most_pairs(cloth, ball, deform, 9), 0u);
+        EXPECT_EQ(cloth.profile().squeezed_count, 0u);
     }
 }
 
 TEST(DeformingCollider, TakesASheetAlongByFriction) {
     // The top of the box goes at 0.4 * 0.1 units per second; so does what lies on it.
     const TriangleMesh box = make_box({1.6, 1.6, 0.1}, 4);
-    for (const SimulationOptions& options : {surfaces(), newton_surfaces()}) {
-        Simulation simulation(sheet_at(0.061, 0.6, 13), {{.map = ExactMap::build(box)}}, options);
-        EXPECT_EQ(most_pairs(simulation, box, shear, static_cast<int>(2 / options.time_step)), 0u);
-        double way = 0;
-        for (const Vec3f& p : simulation.positions()) way += double{p.x};
-        EXPECT_NEAR(way / double(simulation.positions().size()), 2 * 0.4 * 0.1, 0.004);
-    }
+    Simulation simulation(sheet_at(0.061, 0.6, 13), {{.map = ExactMap::build(box)}}, surfaces());
+    EXPECT_EQ(most_pairs(simulation, box, shear, 120), 0u);
+    double way = 0;
+    for (const Vec3f& p : simulation.positions()) way += double{p.x};
+    EXPECT_NEAR(way / double(simulation.positions().size()), 2 * 0.4 * 0.1, 0.004);
 }
 
 TEST(DeformingCollider, LeadsAttachedParticlesBesideTheirFaces) {
@@ -208,17 +168,14 @@ TEST(DeformingCollider, LeadsAttachedParticlesBesideTheirFaces) {
     const auto turn = [](const Vec3d& p, double t) {
         return Rotation::about({1, 0, 0}, t).apply(p) + Vec3d{0, 0, t};
     };
-    for (const SimulationOptions& options : {surfaces(), newton_surfaces()}) {
-        Simulation simulation(sheet, {{.map = ExactMap::build(box), .angular_velocity = {0, 0, 1}}}, options);
-        const double dt = options.time_step;
-        for (int i = 1; i <= static_cast<int>(1 / dt); ++i) {
-            simulation.set_collider_vertices(0, deformed(box, turn, i * dt).vertices);
-            simulation.step();
-            for (std::size_t p = 0; p < 36; ++p) {
-                const Vec3d expected =
-                    Rotation::about({0, 0, 1}, i * dt).apply(turn(Vec3d(sheet.positions[p]), i * dt));
-                ASSERT_NEAR(length(Vec3d(simulation.positions()[p]) - expected), 0, 2e-5) << i;
-            }
+    const double dt = simulation.options().time_step;
+    for (int i = 1; i <= 60; ++i) {
+        simulation.set_collider_vertices(0, deformed(box, turn, i * dt).vertices);
+        simulation.step();
+        for (std::size_t p = 0; p < 36; ++p) {
+            const Vec3d expected =
+                Rotation::about({0, 0, 1}, i * dt).apply(turn(Vec3d(sheet.positions[p]), i * dt));
+            ASSERT_NEAR(length(Vec3d(simulation.positions()[p]) - expected), 0, 2e-5) << i;
         }
     }
 }
@@ -236,8 +193,8 @@ TEST(DeformingCollider, PlaysACacheAndRestsNotBeforeItsEnd) {
     Simulation played(sheet_at(0.43, 1, 15), {{.map = ExactMap::build(ball)}}, surfaces());
     Simulation led = played;
     played.set_collider_cache(0, cache);
-    for (int i = 1; i <= 130; ++i) {
-        const TriangleMesh now{vertices_at(cache, i / 240.0), ball.faces};
+    for (int i = 1; i <= 32; ++i) {
+        const TriangleMesh now{vertices_at(cache, i / 60.0), ball.faces};
         led.set_collider_vertices(0, now.vertices);
         led.step();
         played.step();
@@ -258,12 +215,12 @@ TEST(DeformingCollider, IsTheSameInACopyAndUnderEveryInstructionSet) {
     std::vector<std::uint64_t> hashes;
     const auto run = [&](std::string_view) {
         Simulation simulation(sheet_at(0.43, 1, 15), {{.map = ExactMap::build(ball)}}, surfaces(true));
-        most_pairs(simulation, ball, breathe, 60);
+        most_pairs(simulation, ball, breathe, 15);
         auto copy = std::make_unique<Simulation>(simulation);
         Simulation second = *copy;
         copy.reset();
         for (Simulation* each : {&simulation, &second}) {
-            most_pairs(*each, ball, bend, 40);
+            most_pairs(*each, ball, bend, 10);
             hashes.push_back(each->state_hash());
         }
     };
@@ -278,14 +235,12 @@ TEST(DeformingCollider, DoesNotHoldBackWhatFliesPastIt) {
     const auto tremble = [](const Vec3d& p, double t) { return p * (1 + 0.02 * std::sin(20 * t)); };
     SimulationOptions options = surfaces();
     options.gravity = {};
-    options.drag = 0;
+    options.air_drag = 0;
     const Deformable sheet = sheet_at(0.5, 1.2, 19);
     Simulation simulation(sheet, {{.map = ExactMap::build(ball)}}, options);
     for (std::size_t i = 0; i < sheet.particle_count(); ++i) simulation.set_particle_velocity(i, {12, 0, 0});
-    EXPECT_EQ(most_pairs(simulation, ball, tremble, 20), 0u);
+    EXPECT_EQ(most_pairs(simulation, ball, tremble, 5), 0u);
     EXPECT_EQ(simulation.profile().truncated_count, 0u);
-    // In a single pass of each frame: another would list all of them again.
-    EXPECT_LE(simulation.profile().searched_face_count, 20 * sheet.faces.size());
     for (std::size_t i = 0; i < sheet.particle_count(); ++i)
         EXPECT_NEAR(simulation.deformable().positions[i].x, sheet.positions[i].x + 1, 1e-4);
 }
@@ -302,15 +257,9 @@ TEST(DeformingCollider, CountsWhatItLeavesNoRoom) {
         return both;
     }();
     const auto shut = [](const Vec3d& p, double t) { return p + Vec3d{0, 0, p.z > 0 ? -0.4 * t : 0.4 * t}; };
-    for (const SimulationOptions& options : {surfaces(), newton_surfaces()}) {
-        Simulation simulation(sheet_at(0, 0.5, 8), {{.map = ExactMap::build(jaws)}}, options);
-        const std::size_t pairs =
-            most_pairs(simulation, jaws, shut, static_cast<int>(0.5 / options.time_step));
-        if (options.solver != SolverKind::Newton) {
-            EXPECT_GT(pairs, 0u); // newton finds a way out
-        }
-        EXPECT_GT(simulation.profile().squeezed_count, 0u);
-    }
+    Simulation simulation(sheet_at(0, 0.5, 8), {{.map = ExactMap::build(jaws)}}, surfaces());
+    most_pairs(simulation, jaws, shut, 30);
+    EXPECT_GT(simulation.profile().squeezed_count, 0u);
 }
 
 TEST(DeformingCollider, ThatDeformsToNothingIsNamedWithItsCacheAndTheFrame) {
@@ -328,11 +277,11 @@ TEST(DeformingCollider, ThatDeformsToNothingIsNamedWithItsCacheAndTheFrame) {
                      "the ball, with the vertices that it was given: all vertices of the mesh",
                      [&] { simulation.set_collider_vertices(0, one_point); });
         simulation.set_collider_cache(
-            0, {.sample_seconds = 2.0 / 240, .vertex_count = n, .samples = samples, .name = "walk.pc2"});
+            0, {.sample_seconds = 2.0 / 60, .vertex_count = n, .samples = samples, .name = "walk.pc2"});
         simulation.step();
         expect_error(
             ErrorCode::InvalidMesh,
-            "in frame 2: the ball, with the vertices of its vertex cache walk.pc2 at 0.00833333 s: all",
+            "in frame 2: the ball, with the vertices of its vertex cache walk.pc2 at 0.0333333 s: all",
             [&] { simulation.step(); });
     }
 }
@@ -348,7 +297,7 @@ TEST(DeformingCollider, LeavesAllAsItWasWhereTheMapOfAnotherCannotBeBuilt) {
     collapsed.samples = std::make_shared<const std::vector<Vec3f>>(collapsed.samples->size());
     for (const unsigned thread_count : {1u, 2u}) {
         Simulation control = kind.make(thread_count), simulation = kind.make(thread_count);
-        for (int i = 1; i <= 40; ++i) {
+        for (int i = 1; i <= 20; ++i) {
             if (i == 12) {
                 const std::vector<std::byte> before = simulation.save_state();
                 simulation.set_collider_cache(1, collapsed);
@@ -361,11 +310,11 @@ TEST(DeformingCollider, LeavesAllAsItWasWhereTheMapOfAnotherCannotBeBuilt) {
             control.step();
             simulation.step();
             ASSERT_EQ(simulation.state_hash(), control.state_hash()) << i;
-            const TriangleMesh ball{vertices_at(breathing_cache(), i / 240.0), breathing_ball(0).faces};
+            const TriangleMesh ball{vertices_at(breathing_cache(), i / 60.0), breathing_ball(0).faces};
             ASSERT_TRUE(meeting_faces(simulation, {ball, ball}).empty()) << i;
         }
         EXPECT_EQ(simulation.save_state(), control.save_state());
-        EXPECT_GT(simulation.profile().contact_count, 1000u);
+        EXPECT_GT(simulation.profile().contact_count, 100u);
     }
 }
 
@@ -414,8 +363,10 @@ TEST(DeformingCollider, RefusesOtherTopologiesAndKeepsWhatItHas) {
            [&] { simulation.set_collider_cache(0, {.vertex_count = ball.vertices.size(), .samples = bad}); });
     simulation.step();
 
-    Simulation particles(sheet_at(1, 1, 5), {{.map = ExactMap::build(ball)}}, {});
-    refuse("surface_collision", [&] { particles.set_collider_vertices(0, ball.vertices); });
-    Simulation distances(sheet_at(1, 1, 5), {{.map = DistanceMap::build(ball)}}, {});
+    Simulation particles(sheet_at(1, 1, 5), {{.map = ExactMap::build(ball)}}, jakobsen());
+    refuse("jakobsen", [&] { particles.set_collider_vertices(0, ball.vertices); });
+    ColliderMap with_surface(DistanceMap::build(ball));
+    with_surface.surface = ExactMap::build(ball);
+    Simulation distances(sheet_at(1, 1, 5), {{.map = with_surface}}, surfaces());
     refuse("has no exact map", [&] { distances.set_collider_vertices(0, ball.vertices); });
 }

@@ -3,7 +3,6 @@
 #include "simulation/surfaces/element_tree.hpp"
 #include "simulation/surfaces/elements.hpp"
 #include "simulation/surfaces/near_elements.hpp"
-#include "simulation/surfaces/pair_lists.hpp"
 #include "support/cloth_meshes.hpp"
 #include "support/instruction_sets.hpp"
 #include "support/random_points.hpp"
@@ -268,26 +267,4 @@ TEST(NearElements, AreNotThoseThatMoveAlike) {
     Found found;
     find_all_near(far.tree, beside.tree, 1, found);
     EXPECT_TRUE(found.empty());
-}
-
-TEST(PairLists, KeepWhatIsAddedThroughEveryMove) {
-    constexpr std::size_t kElements = 200;
-    PairLists lists(kElements);
-    std::vector<std::vector<std::uint32_t>> expected(kElements);
-    Random random(7);
-    for (std::uint32_t i = 0; i < 100'000; ++i) {
-        const std::size_t element = random() % kElements;
-        if (random() % 100 == 0) {
-            lists.clear(element);
-            expected[element].clear();
-        } else {
-            lists.add(element, {{i, 0, 0, 0}, PairKind::EdgeEdge});
-            expected[element].push_back(i);
-        }
-    }
-    for (std::size_t element = 0; element < kElements; ++element) {
-        std::vector<std::uint32_t> found;
-        for (const Pair& pair : lists.of(element)) found.push_back(pair.points[0]);
-        EXPECT_EQ(found, expected[element]);
-    }
 }

@@ -1,4 +1,4 @@
-// Simulations with exact maps. Whether a particle is lost is judged from outside: by contains() and sweep()
+// Particles beside exact maps. Whether a particle is lost is judged from outside: by contains() and sweep()
 // of the collider, from where the particle was at the end of one frame to where it is at the end of the next.
 
 #include "support/draping.hpp"
@@ -60,8 +60,9 @@ Simulation plate_and_sheet(bool keep_free) {
     const Collider plate{.map = ExactMap::build(make_box({1.5, 1.5, 0.001})),
                          .linear_velocity = {0.5, 0, 5},
                          .angular_velocity = {4, 18, 2}};
-    return Simulation(test::sheet_at(0.7, 1, 25, Vec3d{0, 0, -30} * kStep), {plate},
-                      {.time_step = kStep, .thickness = kContactThickness, .keep_free = keep_free});
+    return Simulation(
+        test::sheet_at(0.7, 1, 25, Vec3d{0, 0, -30} * kStep), {plate},
+        test::jakobsen({.time_step = kStep, .thickness = kContactThickness, .keep_free = keep_free}));
 }
 
 } // namespace
@@ -97,7 +98,8 @@ TEST(ExactCollision, LosesNoParticleHoweverFastAmongModelsOfAnyScale) {
         for (Vec3f& previous : particles.previous_positions) previous += test::in_cube(random, 1);
         for (std::uint32_t i = 0; i + 1 < 200; ++i)
             particles.sticks.push_back({i, i + 1, 0.5F, StickKind::Structural});
-        Simulation simulation(particles, {collider}, {.thickness = n % 4 == 0 ? 0 : kContactThickness});
+        Simulation simulation(particles, {collider},
+                              test::jakobsen({.thickness = n % 4 == 0 ? 0 : kContactThickness}));
         EXPECT_EQ(lost_in(simulation, 60), 0u);
         EXPECT_EQ(simulation.profile().lost_count, 0u);
     }
@@ -114,7 +116,7 @@ TEST(ExactCollision, FarFromTheOriginLosesNoParticleToTheRoundingOfItsPosition) 
     for (int i = 0; i < 300; ++i) places.push_back(far + test::in_cube(random, 1.5F));
     Deformable particles = particles_at(places);
     for (Vec3f& previous : particles.previous_positions) previous += test::in_cube(random, 0.1F);
-    Simulation simulation(particles, {torus}, {.gravity = {}});
+    Simulation simulation(particles, {torus}, test::jakobsen({.gravity = {}}));
     EXPECT_EQ(lost_in(simulation, 100), 0u);
     EXPECT_EQ(simulation.profile().lost_count, 0u);
 }
@@ -130,7 +132,8 @@ TEST(ExactCollision, DoesNotAddToTheSpeedOfAParticle) {
     }
     Deformable particles = particles_at(places);
     for (std::size_t i = 0; i < places.size(); ++i) particles.previous_positions[i] -= steps[i];
-    Simulation simulation(particles, {torus}, {.gravity = {}, .drag = 0, .thickness = kContactThickness});
+    Simulation simulation(particles, {torus},
+                          test::jakobsen({.gravity = {}, .drag = 0, .thickness = kContactThickness}));
     for (int frame = 0; frame < 100; ++frame) {
         simulation.step();
         for (std::size_t i = 0; i < places.size(); ++i) {
@@ -146,7 +149,7 @@ TEST(ExactCollision, DoesNotAddToTheSpeedOfAParticle) {
 TEST(ExactCollision, LetsAParticleOutThatBeganInsideAndKeepsItOutsideFromThenOn) {
     const Collider sphere{.map = ExactMap::build(make_sphere(1, 80, 40))};
     Simulation simulation(particles_at({{0.1F, 0.05F, 0.8F}, {0, 0, 0}}), {sphere},
-                          {.gravity = {}, .thickness = kContactThickness});
+                          test::jakobsen({.gravity = {}, .thickness = kContactThickness}));
     simulation.step();
     for (const Vec3f& p : simulation.positions()) EXPECT_NEAR(length(p), 1 + kContactThickness, 5e-3);
     for (int i = 0; i < 60; ++i) EXPECT_EQ(step_and_count_lost(simulation), 0u);
@@ -160,7 +163,8 @@ TEST(ExactCollision, KeepsAParticleFreeOfTwoCollidersWhileThereIsRoom) {
     const ExactMap plate = ExactMap::build(make_box({1, 1, 0.1}));
     const Collider below{.map = plate, .pose = {Rotation{}, {0, 0, -0.052}}};
     const Collider above{.map = plate, .pose = {Rotation{}, {0, 0, 0.152}}, .linear_velocity = {0, 0, -1}};
-    Simulation simulation(test::sheet_at(0.02, 0.5, 8), {below, above}, {.thickness = kContactThickness});
+    Simulation simulation(test::sheet_at(0.02, 0.5, 8), {below, above},
+                          test::jakobsen({.thickness = kContactThickness}));
     EXPECT_EQ(lost_in(simulation, 24), 0u);
     simulation.set_collider_velocity(1, {}, {});
     EXPECT_EQ(lost_in(simulation, 60), 0u);
@@ -173,7 +177,7 @@ TEST(ExactCollision, CountsTheParticlesThatGetInsideAnOpenMesh) {
         return std::ranges::all_of(face, [&](std::uint32_t v) { return open.vertices[v].z > 0.49F; });
     });
     Simulation simulation(test::sheet_at(0.6, 0.8, 9), {{.map = ExactMap::build(open)}},
-                          {.thickness = kContactThickness, .allow_open_colliders = true});
+                          test::jakobsen({.thickness = kContactThickness, .allow_open_colliders = true}));
     for (int i = 0; i < 60; ++i) simulation.step();
     const auto inside_count = std::ranges::count_if(
         simulation.positions(), [&](const Vec3f& p) { return contains(simulation.colliders()[0], p); });
@@ -185,7 +189,8 @@ TEST(ExactCollision, CountsWhatTwoCollidersThatOverlapLeaveNoRoomFor) {
     const ExactMap plate = ExactMap::build(make_box({1, 1, 0.5}));
     const Collider below{.map = plate, .pose = {Rotation{}, {0, 0, -0.26}}};
     const Collider above{.map = plate, .pose = {Rotation{}, {0, 0, 0.26}}, .linear_velocity = {0, 0, -0.5}};
-    Simulation simulation(particles_at({{0, 0, 0}}), {below, above}, {.thickness = kContactThickness});
+    Simulation simulation(particles_at({{0, 0, 0}}), {below, above},
+                          test::jakobsen({.thickness = kContactThickness}));
     for (int i = 0; i < 48; ++i) simulation.step();
     EXPECT_GT(simulation.profile().lost_count, 0u);
     EXPECT_FALSE(contains(simulation.colliders()[0], simulation.positions()[0]));
@@ -193,7 +198,8 @@ TEST(ExactCollision, CountsWhatTwoCollidersThatOverlapLeaveNoRoomFor) {
 
 TEST(ExactCollision, AnswersParticlesThatHardlyMoveFromMemory) {
     Simulation simulation(test::sheet_at(0.5 + kContactThickness, 0.5, 10),
-                          {{.map = ExactMap::build(make_box({1, 1, 1}))}}, {.thickness = kContactThickness});
+                          {{.map = ExactMap::build(make_box({1, 1, 1}))}},
+                          test::jakobsen({.thickness = kContactThickness}));
     for (int i = 0; i < 100; ++i) simulation.step();
     EXPECT_EQ(simulation.profile().query_count, 100u * 100u * 10u);
     EXPECT_LT(simulation.profile().map_query_count, simulation.profile().query_count / 20);

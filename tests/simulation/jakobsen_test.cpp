@@ -1,6 +1,5 @@
 // The paper's simulation, SolverKind::Jakobsen.
 
-#include "support/cloth_meshes.hpp"
 #include "support/draping.hpp"
 #include "support/expectations.hpp"
 
@@ -18,11 +17,6 @@ using namespace echinus;
 using namespace echinus::test;
 
 namespace {
-
-SimulationOptions jakobsen(SimulationOptions options = {}) {
-    options.solver = SolverKind::Jakobsen;
-    return options;
-}
 
 /// Mass times way in a frame.
 Vec3d whole_momentum(const Simulation& simulation) {
@@ -122,14 +116,8 @@ TEST(Jakobsen, RefusesWhatItDoesNotHaveAndNamesTheNewtonSolver) {
                      [&] { Simulation(deformable, {}, jakobsen(options)); });
     };
     const Deformable sheet = sheet_at(0, 1, 3);
-    expect_refusal("has folds", make_cloth(rumpled(sheet_mesh(3, 3), 0.1F), {}));
     expect_refusal("has tetrahedra", make_soft_body(make_solid_box({1, 1, 1}, {1, 1, 1}), {}));
     expect_refusal("surface_collision", sheet, {.surface_collision = true});
-    expect_refusal("measure_loads", sheet, {.measure_loads = true});
-    expect_error(ErrorCode::InvalidOptions, "multilevel",
-                 [&] { Simulation(sheet, {}, jakobsen({.multilevel = true})); });
-    expect_error(ErrorCode::InvalidOptions, "substep_count",
-                 [&] { Simulation(sheet, {}, jakobsen({.substep_count = 2})); });
     Simulation simulation(sheet, {{.map = ExactMap::build(make_box({1, 1, 1}))}}, jakobsen());
     const TriangleMesh box = make_box({1, 1, 1});
     expect_error(ErrorCode::InvalidOptions, "cannot deform under the jakobsen solver",
@@ -142,26 +130,4 @@ TEST(Jakobsen, RefusesToBeginWhereFloatsRoundGravityOff) {
     expect_error(ErrorCode::InvalidOptions, "begin nearer",
                  [] { Simulation(sheet_at(1, 1, 3), {}, jakobsen({.time_step = 1e-5})); });
     Simulation(sheet_at(1000, 1, 3), {}, jakobsen({.gravity = {}}));
-}
-
-// Until the older solver goes: what it adds does nothing here.
-TEST(Jakobsen, GivesTheBitsOfVerletWhereOnlyParticlesCollide) {
-    const auto hash = [](SolverKind solver) {
-        std::vector<Collider> colliders{
-            {.map = DistanceMap::build(make_torus(1, 0.4, 30, 16)), .angular_velocity = {0, 0.5, 1}},
-            {.map = ExactMap::build(make_box({0.3, 0.3, 0.3}))}};
-        Deformable sheet = sheet_at(0.45, 2, 21);
-        sheet.inverse_masses[5] = 0;
-        sheet.attachments.push_back({5, 0});
-        Simulation simulation(sheet, colliders,
-                              {.solver = solver, .stiffness = {1, 0.9, 0.4}, .thickness = 0.01});
-        for (int i = 0; i < 120; ++i) {
-            simulation.blow({0.3, 0, 0}, 0.5);
-            if (i == 60) simulation.set_particle_velocity(7, {0, 0, 3});
-            simulation.step();
-        }
-        EXPECT_GT(simulation.profile().contact_count, 1000u);
-        return simulation.state_hash();
-    };
-    EXPECT_EQ(hash(SolverKind::Jakobsen), hash(SolverKind::Verlet));
 }

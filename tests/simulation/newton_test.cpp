@@ -25,8 +25,6 @@ constexpr double kEarthGravity = 9.81;
 
 SimulationOptions newton() {
     SimulationOptions options;
-    options.solver = SolverKind::Newton;
-    options.time_step = 1.0 / 60;
     options.air_drag = 0;
     return options;
 }
@@ -197,7 +195,6 @@ TEST(Newton, APlateThatStrikesASheetThrowsItWithoutAHole) {
 
 TEST(Newton, TheLoadOfAClothAtRestIsItsWeight) {
     SimulationOptions options = newton_contact(0.006);
-    options.measure_loads = true;
     const TriangleMesh box = make_box({2, 2, 1});
     Simulation simulation(sheet_at(0.505, 0.5, 11), colliders_of({box}), options);
     for (int i = 0; i < 120; ++i) simulation.step();
@@ -217,6 +214,91 @@ TEST(Newton, AStripOfTwiceTheBendingStiffnessSagsHalfAsMuch) {
         return double{simulation.positions()[0].z} - double{simulation.positions()[31].z};
     };
     EXPECT_NEAR(sag(0.02) / sag(0.04), 2, 0.05);
+}
+
+namespace {
+
+/// A thread of one stick of 0.1 m, whose upper end is pinned. The lower has half of its mass.
+Deformable hanging_thread() {
+    Deformable thread;
+    thread.positions = thread.previous_positions = {{0, 0, 0}, {0, 0, -0.1F}};
+    thread.inverse_masses = {0, 1};
+    thread.sticks = {{0, 1, 0.1F, StickKind::Structural}};
+    return thread;
+}
+
+/// Of a thread of one stick, which is as wide as it is long.
+double end_mass(const SimulationOptions& options) {
+    return options.material.density * 0.1 * 0.1 / 2;
+}
+
+} // namespace
+
+TEST(Newton, AThreadHangsAsLowAsHookeSaysAtEveryStep) {
+    for (const double step : {1.0 / 60, 1.0 / 240, 1.0 / 1000})
+        for (const double stiffness : {1.0, 100.0}) {
+            SimulationOptions options = newton();
+            options.time_step = step;
+            options.air_drag = 20;
+            options.material.stretch_stiffness = stiffness;
+            Simulation simulation(hanging_thread(), {}, options);
+            while (simulation.frame() * step < 2) simulation.step();
+            const double expected = end_mass(options) * kEarthGravity / stiffness;
+            EXPECT_NEAR(-0.1 - double{simulation.positions()[1].z}, expected, 0.01 * expected + 1e-7);
+        }
+}
+
+TEST(Newton, AThreadSwingsWithThePeriodOfItsSpring) {
+    SimulationOptions options = newton();
+    options.time_step = 1.0 / 1000;
+    options.gravity = {};
+    options.material.stretch_stiffness = 1;
+    options.material.damping = 0;
+    Deformable thread = hanging_thread();
+    thread.positions[1].z -= 0.01F;
+    thread.previous_positions = thread.positions;
+    Simulation simulation(thread, {}, options);
+    int crossings = 0;
+    float before = -1;
+    for (int i = 0; i < 2000; ++i) {
+        simulation.step();
+        const float now = simulation.positions()[1].z + 0.1F;
+        crossings += before < 0 && now >= 0 ? 1 : 0;
+        before = now;
+    }
+    EXPECT_NEAR(crossings, 2 / (2 * std::numbers::pi * std::sqrt(end_mass(options))), 1);
+}
+
+namespace {
+
+/// How far a sheet that begins with such a speed goes along x in a second on a box that goes along x, with a
+/// friction of 0.3.
+/// @param x  of the box's middle
+double slid_on_box(const ExactMap& box, double x, double speed, double box_speed) {
+    SimulationOptions options = newton_contact(0.01);
+    options.friction = 0.3;
+    Deformable sheet = sheet_at(0.51, 0.3, 5);
+    for (Vec3f& p : sheet.positions) p = Vec3f(Vec3d(p) + Vec3d{x, 0, 0});
+    sheet.previous_positions = sheet.positions;
+    const Collider collider{.map = box, .pose = {{}, {x, 0, 0}}, .linear_velocity = {box_speed, 0, 0}};
+    Simulation simulation(sheet, {collider}, options);
+    for (std::size_t i = 0; i < sheet.particle_count(); ++i)
+        simulation.set_particle_velocity(i, {speed, 0, 0});
+    const double from{simulation.positions()[12].x};
+    for (int frame = 0; frame < 60; ++frame) simulation.step();
+    return double{simulation.positions()[12].x} - from;
+}
+
+} // namespace
+
+TEST(Newton, FrictionTakesAsMuchFarFromTheOriginAsAtIt) {
+    const ExactMap box = ExactMap::build(make_box({12, 2, 1}));
+    const double grip = 0.3 * kEarthGravity;
+    for (const double x : {0.0, 20.0, 1000.0}) {
+        const double stop = 2.0 * 2.0 / (2 * grip), start = 1 - 1 / (2 * grip);
+        EXPECT_NEAR(slid_on_box(box, x, 2, 0), stop, 0.05 * stop) << x;
+        EXPECT_NEAR(slid_on_box(box, x, 0, 1), start, 0.05 * start) << x;
+    }
 }
 
 std::size_t inside_count(const Simulation& simulation) {
@@ -257,7 +339,6 @@ TEST(Newton, ParticlesHoldByFrictionOnAMapThatMovesAndBearTheirWeight) {
     SimulationOptions options = newton();
     options.thickness = 0.004;
     options.friction = 0.5;
-    options.measure_loads = true;
     Collider box{.map = DistanceMap::build(make_box({2, 2, 1}, 8)), .pose = {tilt, {}}};
     box.linear_velocity = {0.1, 0, 0.2};
     Simulation simulation(sheet, {box}, options);

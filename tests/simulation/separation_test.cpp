@@ -1,7 +1,6 @@
 // How far apart a vertex and a face or two edges are: a bound that holds, and a plane between them.
 
 #include "simulation/surfaces/separation.hpp"
-#include "simulation/surfaces/turning_plane.hpp"
 #include "support/instruction_sets.hpp"
 #include "support/random_points.hpp"
 
@@ -189,48 +188,5 @@ TEST(Separation, HasTheSameBitsInVectorLanes) {
                 ASSERT_EQ(std::memcmp(&found[i], &expected, sizeof expected), 0) << name << ", pair " << i;
             }
         });
-    }
-}
-
-TEST(TurningPlane, ShowsThatWhatIsPressedTogetherAsAWholeStaysApart) {
-    // A vertex over the middle of a steep face, both pressed to half their height: the plane of the face
-    // turns.
-    const float gap = 1e-3F;
-    const Points points{{{0.5F, 0, 0.5F + gap}, {0, -1, 0}, {1, 0, 1}, {0, 1, 0}}};
-    Points pressed = points;
-    for (Vec3f& p : pressed) p.z *= 0.5F;
-    EXPECT_TRUE(stay_apart(PairKind::VertexFace, points, pressed, 0.1F * gap));
-    Points through = points;
-    through[0].z -= 1;
-    EXPECT_GT(separation(PairKind::VertexFace, through).gap, gap);
-    EXPECT_FALSE(stay_apart(PairKind::VertexFace, points, through, 0.1F * gap));
-}
-
-TEST(TurningPlane, CallsNothingApartThatComesNearerThanTheGapAndNearlyAllThatDoesNot) {
-    constexpr float kGap = 0.01F;
-    constexpr int kTimes = 64;
-    test::Random random(29);
-    for (const PairKind kind : kKinds) {
-        int apart = 0, shown = 0;
-        for (int n = 0; n < 3000; ++n) {
-            Points from, to;
-            for (std::size_t k = 0; k < 4; ++k) {
-                from[k] = in_cube(random, 1);
-                to[k] = from[k] + in_cube(random, 0.7F);
-            }
-            double least = std::numeric_limits<double>::infinity();
-            for (int i = 0; i <= kTimes; ++i) {
-                Points now;
-                for (std::size_t k = 0; k < 4; ++k)
-                    now[k] = from[k] + (to[k] - from[k]) * (static_cast<float>(i) / kTimes);
-                least = std::min(least, distance(kind, now));
-            }
-            const bool is_shown = stay_apart(kind, from, to, kGap);
-            if (is_shown) ASSERT_GT(least, 0.999 * double{kGap}) << n;
-            apart += least > 2 * kGap ? 1 : 0;
-            shown += least > 2 * kGap && is_shown ? 1 : 0;
-        }
-        EXPECT_GT(apart, 1000);
-        EXPECT_GT(shown, 0.99 * apart);
     }
 }

@@ -23,12 +23,7 @@ namespace {
 constexpr double kBodyThickness = 0.004;
 
 SimulationOptions with_surfaces() {
-    return {.solver = SolverKind::Xpbd,
-            .iteration_count = 1,
-            .substep_count = 10,
-            .thickness = kBodyThickness,
-            .surface_collision = true,
-            .self_collision = true};
+    return {.thickness = kBodyThickness, .surface_collision = true, .self_collision = true};
 }
 
 Deformable cube(std::uint32_t segments, const SoftBodyOptions& options) {
@@ -133,21 +128,20 @@ TEST(SoftBody, OfImpossibleMeshesAndOptionsIsRefused) {
                        [&] { with_masses_times(0, make_soft_body(box, {})); });
 }
 
-TEST(SoftBody, NeedsXpbdAndFittingTetrahedra) {
+TEST(SoftBody, NeedsFittingTetrahedra) {
     const Deformable body = cube(1, {});
-    test::expect_error(ErrorCode::InvalidOptions, "need the solver Xpbd", [&] { Simulation(body, {}, {}); });
     Deformable wrong = body;
     wrong.tetrahedra[3].particles[1] = 8;
     test::expect_error(ErrorCode::InvalidOptions, "tetrahedron 3 needs four different particles of 8",
-                       [&] { Simulation(wrong, {}, {.solver = SolverKind::Xpbd}); });
+                       [&] { Simulation(wrong, {}, {}); });
     wrong = body;
     wrong.tetrahedra[1].mu = 0;
     test::expect_error(ErrorCode::InvalidOptions, "tetrahedron 1 has a rest shape",
-                       [&] { Simulation(wrong, {}, {.solver = SolverKind::Xpbd}); });
+                       [&] { Simulation(wrong, {}, {}); });
     wrong = body;
     wrong.tetrahedra[2].gradients[1] = wrong.tetrahedra[2].gradients[0];
     test::expect_error(ErrorCode::InvalidOptions, "tetrahedron 2 has a rest shape",
-                       [&] { Simulation(wrong, {}, {.solver = SolverKind::Xpbd}); });
+                       [&] { Simulation(wrong, {}, {}); });
 }
 
 TEST(SoftBody, ThrownOutOfAllBoundsDivergesWhateverItCollidesWith) {
@@ -167,7 +161,7 @@ TEST(SoftBody, IsNotMovedByItsOwnThickness) {
     options.gravity = {};
     options.thickness = options.self_thickness = 0.02;
     Simulation simulation(sheet, {}, options);
-    for (int frame = 0; frame < 20; ++frame) simulation.step();
+    for (int frame = 0; frame < 5; ++frame) simulation.step();
     for (std::size_t i = 0; i < sheet.particle_count(); ++i)
         EXPECT_LT(length(simulation.positions()[i] - sheet.positions[i]), 1e-5F);
 }
@@ -178,7 +172,7 @@ TEST(SoftBody, FallsOnABallAndNoFaceMeetsAnotherInAnyFrame) {
         5, {.young_modulus = 5e3, .damping = 0.02, .pose = {Rotation::about({1, 1, 0}, 0.5), {0, 0, 0.4}}});
     ASSERT_LT(corner_count(body), body.particle_count());
     Simulation simulation(body, test::colliders_of(models), with_surfaces());
-    test::expect_nothing_meets(simulation, models, 240);
+    test::expect_nothing_meets(simulation, models, 60);
     EXPECT_EQ(simulation.profile().lost_count, 0u);
     EXPECT_GT(test::least_volume_ratio(body, simulation.positions()), 0.1);
 }
@@ -193,9 +187,7 @@ TEST(SoftBody, PressedBetweenPlatesIsTakenAlongByBothAndMeetsNeither) {
     const double start = 0.1 + kBodyThickness + 0.026, end = 8 * kBodyThickness + 0.05 - start;
     colliders[0].pose.translation = {0, 0, -start};
     colliders[1].pose.translation = {0, 0, start};
-    SimulationOptions options = with_surfaces();
-    options.time_step = 1.0 / 60;
-    Simulation simulation(ball, colliders, options);
+    Simulation simulation(ball, colliders, with_surfaces());
     simulation.set_collider_keyframes(1, {{0, colliders[1].pose}, {0.3, {{}, {0, 0, end}}}});
     for (int frame = 1; frame <= 40; ++frame) {
         simulation.step();
@@ -214,33 +206,24 @@ TEST(SoftBody, UnderALightSheetIsPressedByAPlateThatMeetsNeither) {
     const ExactMap map = ExactMap::build(make_sphere(0.1, 16, 8));
     const Deformable sheet = make_cloth(
         {.column_count = 16, .row_count = 16, .width = 0.4, .height = 0.4, .pose = {{}, {0, 0, 0.24}}});
-    const double sheet_mass = 0.2 * 0.4 * 0.4;
-    std::uint64_t truncated = 0;
     for (const double size : {0.05, 0.06})
         for (const double young_modulus : {2e4, 4e4})
-            for (const double speed : {0.6, 0.7, 0.8}) {
+            for (const double speed : {0.6, 0.8}) {
                 SCOPED_TRACE(testing::Message() << size << " " << young_modulus << " " << speed);
                 colliders[1].linear_velocity = {0, 0, -speed};
                 const TetrahedralMesh ball = tetrahedralize(map, {.size = size}).mesh;
-                const std::vector<Deformable> parts{
-                    with_masses_times(sheet_mass / static_cast<double>(sheet.particle_count()), sheet),
-                    make_soft_body(ball, {.young_modulus = young_modulus,
-                                          .poisson_ratio = 0.3,
-                                          .damping = 0.03,
-                                          .pose = {{}, {0, 0, 0.11}}})};
-                Simulation simulation(combine(parts), colliders,
-                                      {.solver = SolverKind::Xpbd,
-                                       .iteration_count = 1,
-                                       .substep_count = 10,
-                                       .thickness = 0.004,
-                                       .surface_collision = true,
-                                       .self_collision = true});
-                test::expect_nothing_meets(simulation, plates, static_cast<int>(52 / speed));
+                const std::vector<Deformable> parts{sheet,
+                                                    make_soft_body(ball, {.young_modulus = young_modulus,
+                                                                          .poisson_ratio = 0.3,
+                                                                          .damping = 0.03,
+                                                                          .pose = {{}, {0, 0, 0.11}}})};
+                Simulation simulation(
+                    combine(parts), colliders,
+                    {.thickness = 0.004, .surface_collision = true, .self_collision = true});
+                test::expect_nothing_meets(simulation, plates, static_cast<std::uint32_t>(13 / speed));
                 EXPECT_EQ(simulation.profile().lost_count, 0u);
                 EXPECT_EQ(simulation.profile().squeezed_count, 0u);
-                truncated += simulation.profile().truncated_count;
             }
-    EXPECT_GT(truncated, 0u);
 }
 
 TEST(SoftBody, UnderALightSheetLosesNothingToAPlateThatComesDownFast) {
@@ -261,17 +244,12 @@ TEST(SoftBody, UnderALightSheetLosesNothingToAPlateThatComesDownFast) {
             make_soft_body(
                 ball,
                 {.young_modulus = 5e3, .poisson_ratio = 0.3, .damping = 0.01, .pose = {{}, {0, 0, 0.145}}}),
-            with_masses_times(0.02 / static_cast<double>(sheet.particle_count()), sheet)};
+            sheet};
         colliders[1].pose.translation = {0, 0, 0.285 + gap};
-        Simulation simulation(combine(parts), colliders,
-                              {.solver = SolverKind::Xpbd,
-                               .iteration_count = 1,
-                               .substep_count = 10,
-                               .thickness = 0.003,
-                               .friction = 0.3,
-                               .surface_collision = true,
-                               .self_collision = true});
-        test::expect_nothing_meets(simulation, plates, static_cast<int>((0.12 + gap) * 80));
+        Simulation simulation(
+            combine(parts), colliders,
+            {.thickness = 0.003, .friction = 0.3, .surface_collision = true, .self_collision = true});
+        test::expect_nothing_meets(simulation, plates, static_cast<std::uint32_t>((0.12 + gap) * 20));
         EXPECT_EQ(simulation.profile().lost_count, 0u) << gap;
         EXPECT_EQ(simulation.profile().squeezed_count, 0u) << gap;
     }
@@ -291,10 +269,9 @@ TEST(SoftBody, MeetsNoLightSheetOnItUnderAnotherWhileAPlateComesDown) {
     };
     const Deformable sheet = make_cloth(
         {.column_count = 25, .row_count = 25, .width = 0.4, .height = 0.4, .pose = {{}, {0, 0, 0.212}}});
-    const std::vector<Deformable> parts{block_at(0.13), with_masses_times(0.02 / 625, sheet),
-                                        block_at(0.294)};
+    const std::vector<Deformable> parts{block_at(0.13), sheet, block_at(0.294)};
     Simulation simulation(combine(parts), colliders, with_surfaces());
-    test::expect_nothing_meets(simulation, plates, 60);
+    test::expect_nothing_meets(simulation, plates, 15);
     EXPECT_EQ(simulation.profile().lost_count, 0u);
 }
 
@@ -307,10 +284,9 @@ TEST(SoftBody, OnAWallThatSwaysOrTurnsOverAFloorMeetsNothingThatFallsOnIt) {
     const std::vector<TriangleMesh> models{make_box({4, 4, 0.1}, 4), make_box({0.1, 1, 1}, 2)};
     struct Case {
         double young_modulus;
-        std::uint32_t substeps;
         double turn;
     };
-    for (const auto& [young_modulus, substeps, turn] : {Case{620, 10, 0}, Case{1030, 5, 0.3}}) {
+    for (const auto& [young_modulus, turn] : {Case{620, 0}, Case{1030, 0.3}}) {
         SoftBodyOptions soft{.young_modulus = young_modulus, .poisson_ratio = 0.49, .damping = 0};
         soft.pose.translation = {0.02, 0.01, 0.53};
         const Deformable falling = make_soft_body(ball, soft);
@@ -322,21 +298,19 @@ TEST(SoftBody, OnAWallThatSwaysOrTurnsOverAFloorMeetsNothingThatFallsOnIt) {
         colliders[0].pose.translation = {};
         colliders[1].pose.translation = {double{left} - 0.056, 0, 0.3};
         SimulationOptions options = with_surfaces();
-        options.substep_count = substeps;
         options.thickness = 0.003;
-        options.drag = 0;
+        options.air_drag = 0;
         options.friction = 0.5;
         Simulation simulation(combine(parts), colliders, options);
-        for (int frame = 0; frame < 110; ++frame) {
-            const Vec3d sway{-0.05 * std::sin(frame * 0.05), 0.03 * std::sin(frame * 0.07), 0};
-            const double half_angle = turn * std::sin(frame * 0.05) / 2;
+        for (int frame = 0; frame < 28; ++frame) {
+            const Vec3d sway{-0.05 * std::sin(frame * 0.2), 0.03 * std::sin(frame * 0.28), 0};
+            const double half_angle = turn * std::sin(frame * 0.2) / 2;
             simulation.set_collider_pose(1, {{std::cos(half_angle), std::sin(half_angle), 0, 0},
                                              colliders[1].pose.translation + sway});
             simulation.step();
             ASSERT_EQ(test::meeting_faces(simulation, models).size(), 0u) << young_modulus << " " << frame;
         }
         EXPECT_EQ(simulation.profile().squeezed_count, 0u) << young_modulus;
-        EXPECT_GT(simulation.profile().truncated_count, 0u) << young_modulus;
     }
 }
 
@@ -348,10 +322,10 @@ TEST(SoftBody, IsNotTakenAlongByAModelThatFallsAwayFromIt) {
         SimulationOptions options = with_surfaces();
         options.gravity = {};
         options.friction = 0;
-        options.drag = 0;
-        const Deformable body = cube(5, {.young_modulus = 1e4, .pose = {{}, {0, 0, 0.154}}});
+        options.air_drag = 0;
+        const Deformable body = cube(4, {.young_modulus = 1e4, .pose = {{}, {0, 0, 0.154}}});
         Simulation simulation(body, colliders, options);
-        for (int frame = 0; frame < 12; ++frame) simulation.step();
+        for (int frame = 0; frame < 3; ++frame) simulation.step();
         EXPECT_EQ(simulation.profile().truncated_count, 0u) << speed;
         for (std::size_t i = 0; i < body.particle_count(); ++i)
             ASSERT_NEAR(simulation.positions()[i].z, body.positions[i].z, 0.002) << speed;
@@ -363,13 +337,11 @@ TEST(SoftBody, CollidesWithAnotherAndWithClothAsWithItself) {
     const auto at = [](double height, double young) {
         return cube(3, {.young_modulus = young, .damping = 0.05, .pose = {{}, {0, 0, height}}});
     };
-    const Deformable cloth = with_masses_times(
-        0.001,
-        make_cloth(
-            {.column_count = 15, .row_count = 15, .width = 0.4, .height = 0.4, .pose = {{}, {0, 0, 0.45}}}));
+    const Deformable cloth = make_cloth(
+        {.column_count = 15, .row_count = 15, .width = 0.4, .height = 0.4, .pose = {{}, {0, 0, 0.45}}});
     const std::vector<Deformable> parts{at(0.16, 2e4), at(0.7, 8e3), cloth};
     Simulation simulation(combine(parts), test::colliders_of(models), with_surfaces());
-    test::expect_nothing_meets(simulation, models, 200);
+    test::expect_nothing_meets(simulation, models, 50);
     // The upper body lies on the cloth, and the cloth on the lower body.
     const float lower = simulation.positions()[0].z, upper = simulation.positions()[64].z;
     EXPECT_GT(upper - lower, 0.12F);
@@ -384,10 +356,6 @@ struct Beam {
     double slenderness = 5; ///< length over height; its width is half its height where it bends
     /// density * gravity * length / Young's modulus: twice the strain of a bar that hangs, on the average.
     double strain = 0.02;
-    /// How far a wave goes in a substep, in segments: the smaller, the less is left of what one relaxation
-    /// leaves undone, and the coarser are forces rounded.
-    double courant_number = 0.5;
-    std::uint32_t iterations = 1;
 };
 
 struct Settled {
@@ -412,14 +380,9 @@ inline Settled settle(const Beam& beam, const Vec3d& down, std::uint32_t segment
                                                   .poisson_ratio = beam.poisson_ratio,
                                                   .pins = vertices_at_x(mesh, 0)});
     const double speed = std::sqrt(young / kDensity);
-    SimulationOptions options{.solver = SolverKind::Xpbd,
-                              .iteration_count = beam.iterations,
-                              .substep_count = 10,
-                              .gravity = down * kGravity};
-    options.time_step = beam.courant_number * spacing / speed * options.substep_count;
-    options.drag = std::min(0.9, 1.6 * pace * speed * options.time_step);
+    const SimulationOptions options{.gravity = down * kGravity, .air_drag = 1.6 * pace * speed};
     Simulation simulation(body, {}, options);
-    while (simulation.frame() * options.time_step * pace * speed < 12) simulation.step();
+    while (simulation.frame() * options.time_step * pace * speed < 30) simulation.step();
     Settled settled{0, expected * beam.strain, 0, body.tetrahedra.size()};
     const auto end = vertices_at_x(mesh, 1);
     for (const std::uint32_t i : end)
@@ -471,14 +434,9 @@ Slide slide_down(double degrees) {
                         .damping = 0.02,
                         .pose = {tilt, tilt.apply({0, 0, 0.5 + 0.05 + kBodyThickness})}});
     const Collider slope{.map = ExactMap::build(make_box({3, 1, 1})), .pose = {tilt, {}}};
-    Simulation simulation(block, {slope},
-                          {.solver = SolverKind::Xpbd,
-                           .iteration_count = 1,
-                           .substep_count = 10,
-                           .drag = 0,
-                           .thickness = kBodyThickness,
-                           .friction = kFriction,
-                           .surface_collision = true});
+    Simulation simulation(
+        block, {slope},
+        {.air_drag = 0, .thickness = kBodyThickness, .friction = kFriction, .surface_collision = true});
     const auto middle = [&] {
         Vec3d sum;
         for (const Vec3f& p : simulation.positions()) sum += Vec3d(p);
@@ -501,14 +459,13 @@ Slide slide_down(double degrees) {
 } // namespace
 
 TEST(SoftBodyPhysics, HangsABarAsLowAsHookeSays) {
-    const test::Settled bar = test::hang_bar({.segments = 3, .poisson_ratio = 0.3, .iterations = 3});
+    const test::Settled bar = test::hang_bar({.segments = 3, .poisson_ratio = 0.3});
     EXPECT_NEAR(bar.deflection / bar.expected, 1, 0.03);
 }
 
 TEST(SoftBodyPhysics, BendsACantileverAsTimoshenkoSaysTheCloserTheFinerItIs) {
-    const test::Settled coarse =
-        test::bend_cantilever({.segments = 2, .poisson_ratio = 0.3, .iterations = 3});
-    const test::Settled fine = test::bend_cantilever({.segments = 4, .poisson_ratio = 0.3, .iterations = 3});
+    const test::Settled coarse = test::bend_cantilever({.segments = 2, .poisson_ratio = 0.3});
+    const test::Settled fine = test::bend_cantilever({.segments = 4, .poisson_ratio = 0.3});
     const double coarse_error = 1 - coarse.deflection / coarse.expected;
     const double fine_error = 1 - fine.deflection / fine.expected;
     EXPECT_LT(coarse_error, 0.4);
@@ -532,22 +489,19 @@ TEST(SoftBodyPhysics, SlidesDownASlopeOnlyBeyondTheAngleOfFrictionAndThenAsFastA
         EXPECT_NEAR(slide_down(degrees).friction, 0.5, 0.0025) << degrees;
 }
 
-TEST(SoftBodyPhysics, FallsAsFastFarFromTheOriginAndInSmallStepsAsNearIt) {
-    for (const float height : {0.5F, 2.0F, 8.0F})
-        for (const std::uint32_t substeps : {5U, 10U, 20U}) {
-            const Deformable body =
-                make_soft_body(make_solid_box({0.3, 0.3, 0.3}, {2, 2, 2}), {.pose = {{}, {0, 0, height}}});
-            Simulation simulation(
-                body, {},
-                {.solver = SolverKind::Xpbd, .iteration_count = 1, .substep_count = substeps, .drag = 0});
-            for (int frame = 0; frame < 60; ++frame) simulation.step();
-            double fallen = 0;
-            for (std::size_t i = 0; i < body.particle_count(); ++i)
-                fallen += double{body.positions[i].z} - double{simulation.positions()[i].z};
-            const double n = 60.0 * substeps, seconds = 60 * simulation.options().time_step / n;
-            EXPECT_NEAR(fallen / static_cast<double>(body.particle_count()) /
-                            (9.81 * seconds * seconds * n * (n + 1) / 2),
-                        1, 0.005)
-                << height << ' ' << substeps;
-        }
+TEST(SoftBodyPhysics, FallsAsFastFarFromTheOriginAsNearIt) {
+    double at_the_origin = 0;
+    for (const float height : {0.0F, 2.0F, 30.0F, 1000.0F}) {
+        const Deformable body =
+            make_soft_body(make_solid_box({0.3, 0.3, 0.3}, {2, 2, 2}), {.pose = {{}, {0, 0, height}}});
+        Simulation simulation(body, {}, {.air_drag = 0});
+        for (int frame = 0; frame < 15; ++frame) simulation.step();
+        double fallen = 0;
+        for (std::size_t i = 0; i < body.particle_count(); ++i)
+            fallen += (double{body.positions[i].z} - double{simulation.positions()[i].z}) /
+                      static_cast<double>(body.particle_count());
+        if (height == 0) at_the_origin = fallen;
+        EXPECT_NEAR(fallen / at_the_origin, 1, 0.001) << height;
+        EXPECT_NEAR(fallen, 9.81 * 0.25 * 0.25 / 2, 0.1 * fallen);
+    }
 }

@@ -22,14 +22,6 @@ Deformable single_particle(const Vec3f& position, const Vec3f& velocity_times_st
             .faces = {}};
 }
 
-Vec3d momentum(const Simulation& simulation) {
-    const Deformable& d = simulation.deformable();
-    Vec3d sum;
-    for (std::size_t i = 0; i < d.particle_count(); ++i)
-        sum += (Vec3d(d.positions[i]) - Vec3d(d.previous_positions[i])) * (1.0 / d.inverse_masses[i]);
-    return sum;
-}
-
 /// A sheet whose particles differ in mass and start with a velocity that stretches and turns it.
 Deformable lively_cloth() {
     Deformable cloth = make_cloth({.column_count = 8, .row_count = 6});
@@ -53,29 +45,19 @@ double largest_strain(const Simulation& simulation, StickKind kind) {
 
 } // namespace
 
-TEST(Solver, LetsAParticleFallAsVerletDoes) {
-    // Without drag, n steps from rest fall by g dt^2 n (n + 1) / 2.
-    const SimulationOptions options{.time_step = 0.01, .gravity = {0, 0, -10}, .drag = 0};
-    Simulation simulation(single_particle({}, {}), {}, options);
-    for (int i = 0; i < 100; ++i) simulation.step();
-    EXPECT_NEAR(simulation.positions()[0].z, -10 * 0.01 * 0.01 * 100 * 101 / 2, 1e-4);
-    EXPECT_EQ(simulation.positions()[0].x, 0);
-    EXPECT_EQ(simulation.frame(), 100u);
-}
-
 TEST(Solver, LosesNothingOfGravityWhereverAParticleHasComeTo) {
     // Gravity moves a particle in a frame by little more than the last digit of a coordinate of 2000.
-    const SimulationOptions options{.gravity = {-9.81, 0, 0}, .drag = 0, .bound = 1e5};
+    const SimulationOptions options{.gravity = {-9.81, 0, 0}, .air_drag = 0, .bound = 1e5};
     Simulation simulation(single_particle({}, {}), {}, options);
     simulation.set_particle_velocity(0, {1000, 0, 0});
-    for (int i = 0; i < 480; ++i) simulation.step();
+    for (int i = 0; i < 120; ++i) simulation.step();
     const float before = simulation.positions()[0].x;
-    for (int i = 0; i < 240; ++i) simulation.step();
+    for (int i = 0; i < 60; ++i) simulation.step();
     EXPECT_NEAR(double{simulation.positions()[0].x - before}, 1000 - 9.81 * 2.5, 0.1);
 }
 
 TEST(Solver, TakesTheDragFromTheVelocityInEveryFrame) {
-    const SimulationOptions options{.time_step = 0.01, .gravity = {}, .drag = 0.1};
+    const SimulationOptions options = test::jakobsen({.time_step = 0.01, .gravity = {}, .drag = 0.1});
     Simulation simulation(single_particle({}, {1, 0, 0}), {}, options);
     simulation.step();
     EXPECT_NEAR(simulation.positions()[0].x, 0.9, 1e-6);
@@ -84,19 +66,11 @@ TEST(Solver, TakesTheDragFromTheVelocityInEveryFrame) {
     EXPECT_NEAR(simulation.largest_speed(), 81, 1e-3);
 }
 
-TEST(Solver, KeepsTheMomentumOfAFreeSheet) {
-    Simulation simulation(lively_cloth(), {}, {.gravity = {}, .drag = 0});
-    const Vec3d before = momentum(simulation);
-    ASSERT_GT(length(before), 0.01);
-    for (int i = 0; i < 200; ++i) simulation.step();
-    EXPECT_NEAR(length(momentum(simulation) - before), 0, 1e-3 * length(before));
-}
-
 TEST(Solver, BringsSticksBackToTheirLength) {
     Deformable cloth = make_cloth({.column_count = 10, .row_count = 10});
     for (Vec3f& p : cloth.positions) p *= 1.3F;
     cloth.previous_positions = cloth.positions;
-    Simulation simulation(cloth, {}, {.gravity = {}, .drag = 0.05});
+    Simulation simulation(cloth, {}, test::jakobsen({.gravity = {}, .drag = 0.05}));
     EXPECT_NEAR(largest_strain(simulation, StickKind::Structural), 0.3, 1e-3);
     for (int i = 0; i < 300; ++i) simulation.step();
     for (const StickKind kind : {StickKind::Structural, StickKind::Shear, StickKind::Bending})
@@ -109,24 +83,12 @@ TEST(Solver, HangsAChainFromItsPinWithNoMoreStretchThanItsWeightMakes) {
     chain.previous_positions = chain.positions;
     chain.inverse_masses = {0, 1, 1, 1, 1};
     for (std::uint32_t i = 0; i < 4; ++i) chain.sticks.push_back({i, i + 1, 0.1F, StickKind::Structural});
-    Simulation simulation(chain, {}, {.drag = 0.02});
+    Simulation simulation(chain, {}, test::jakobsen({.drag = 0.02}));
     for (int i = 0; i < 3000 && !simulation.at_rest(); ++i) simulation.step();
     EXPECT_TRUE(simulation.at_rest());
     EXPECT_EQ(simulation.positions()[0], Vec3f{});
     EXPECT_NEAR(simulation.positions()[4].z, -0.4, 0.01);
     EXPECT_NEAR(simulation.positions()[4].x, 0, 0.01);
-}
-
-TEST(Solver, MovesTheLighterParticleMore) {
-    Deformable pair{.positions = {{0, 0, 0}, {2, 0, 0}},
-                    .previous_positions = {{0, 0, 0}, {2, 0, 0}},
-                    .inverse_masses = {1, 3},
-                    .sticks = {{0, 1, 1, StickKind::Structural}},
-                    .faces = {}};
-    Simulation simulation(pair, {}, {.iteration_count = 1, .gravity = {}});
-    simulation.step();
-    EXPECT_FLOAT_EQ(simulation.positions()[0].x, 0.25F);
-    EXPECT_FLOAT_EQ(simulation.positions()[1].x, 1.25F);
 }
 
 TEST(Solver, LeavesTwoParticlesOnOneSpotFinite) {
@@ -135,14 +97,14 @@ TEST(Solver, LeavesTwoParticlesOnOneSpotFinite) {
                     .inverse_masses = {1, 1},
                     .sticks = {{0, 1, 1, StickKind::Structural}},
                     .faces = {}};
-    Simulation simulation(pair, {}, {.gravity = {}});
+    Simulation simulation(pair, {}, test::jakobsen({.gravity = {}}));
     simulation.step();
     EXPECT_EQ(simulation.positions()[0], (Vec3f{1, 1, 1}));
 }
 
 TEST(Solver, GivesTheSameBitsOnEveryRunAndInEveryCopy) {
-    Simulation first(lively_cloth(), {}, {});
-    Simulation second(lively_cloth(), {}, {});
+    Simulation first(lively_cloth(), {}, test::jakobsen());
+    Simulation second(lively_cloth(), {}, test::jakobsen());
     for (int i = 0; i < 20; ++i) first.step();
     for (int i = 0; i < 10; ++i) second.step();
     EXPECT_NE(first.state_hash(), second.state_hash());
@@ -162,7 +124,7 @@ TEST(Solver, SeparatesStatesThatDifferOnlyInVelocity) {
 TEST(Solver, RestsWhenItHasStayedNearOnePlaceForSoManyFrames) {
     const RestCondition rest{.distance = 0.0013, .speed = 1, .frame_count = 5};
     Simulation simulation(single_particle({}, {0.01F, 0, 0}), {},
-                          {.time_step = 0.01, .gravity = {}, .drag = 0.5, .rest = rest});
+                          test::jakobsen({.time_step = 0.01, .gravity = {}, .drag = 0.5, .rest = rest}));
     // It goes by 5, 2.5, 1.25, 0.6 ... mm. The third step alone is short enough but leads too far with the
     // fourth; all later ones together are shorter: at rest with the ninth.
     for (int i = 0; i < 8; ++i) simulation.step();
@@ -173,7 +135,7 @@ TEST(Solver, RestsWhenItHasStayedNearOnePlaceForSoManyFrames) {
 
 TEST(Solver, DoesNotRestWhileAParticleTremblesInItsPlace) {
     Simulation simulation(single_particle({}, {}), {},
-                          {.gravity = {}, .drag = 0, .rest = {.frame_count = 20}});
+                          {.time_step = 1.0 / 240, .gravity = {}, .rest = {.frame_count = 20}});
     // To and fro by 0.8 mm, at 0.2 units per second.
     for (int i = 0; i < 100; ++i) {
         simulation.set_particle_velocity(0, {i % 2 == 0 ? 0.2 : -0.2, 0, 0});
@@ -186,7 +148,8 @@ TEST(Solver, DoesNotRestWhileAParticleTremblesInItsPlace) {
 }
 
 TEST(Solver, NamesTheFrameInWhichItDiverges) {
-    Simulation simulation(single_particle({}, {1, 0, 0}), {}, {.gravity = {}, .drag = 0, .bound = 10.5});
+    Simulation simulation(single_particle({}, {1, 0, 0}), {},
+                          test::jakobsen({.gravity = {}, .drag = 0, .bound = 10.5}));
     try {
         for (int i = 0; i < 20; ++i) simulation.step();
         FAIL() << "nothing was noticed";
@@ -206,7 +169,8 @@ TEST(Solver, VelocitiesBeyondAllBoundsDivergeInEachFurtherStepToo) {
         for (const bool surfaces : {false, true}) {
             Simulation simulation(test::sheet_at(0.2, 0.5, 9),
                                   test::colliders_of({make_sphere(0.15, 24, 12)}),
-                                  {.thickness = 0.01, .surface_collision = surfaces});
+                                  surfaces ? SimulationOptions{.thickness = 0.01, .surface_collision = true}
+                                           : test::jakobsen({.thickness = 0.01}));
             simulation.step();
             disturb(simulation);
             for (int i = 0; i < 3; ++i)

@@ -64,47 +64,51 @@ void expect_falls_without_meeting(const TriangleMesh& model, const Placement& pl
 } // namespace
 
 TEST(SurfaceCollision, KeepsASheetOffABall) {
-    expect_falls_without_meeting(make_sphere(0.4, 24, 12), {}, sheet_at(0.42, 1.2, 25, {0, 0, -0.01}), 150);
+    expect_falls_without_meeting(make_sphere(0.4, 24, 12), {}, sheet_at(0.42, 1.2, 25, {0, 0, -0.04}), 37);
 }
 
 TEST(SurfaceCollision, KeepsASheetOffTheEdgeOfAThinPlate) {
-    expect_falls_without_meeting(make_box({0.003, 1, 1}), {}, sheet_at(0.52, 1, 20, {0, 0, -0.01}), 120);
+    expect_falls_without_meeting(make_box({0.003, 1, 1}), {}, sheet_at(0.52, 1, 20, {0, 0, -0.04}), 30);
 }
 
 TEST(SurfaceCollision, KeepsASheetOffThePointOfANeedle) {
-    Deformable sheet = sheet_at(0.03, 1, 20, {0, 0, -0.01});
+    Deformable sheet = sheet_at(0.03, 1, 20, {0, 0, -0.04});
     for (const float shift : {0.0F, 0.011F}) {
         for (Vec3f& p : sheet.positions) p += Vec3f{shift, shift / 3, 0};
         for (Vec3f& p : sheet.previous_positions) p += Vec3f{shift, shift / 3, 0};
-        expect_falls_without_meeting(needle(), {}, sheet, 120);
+        expect_falls_without_meeting(needle(), {}, sheet, 30);
     }
 }
 
 TEST(SurfaceCollision, KeepsASheetOffTheTeethOfAComb) {
     const Rotation upright = Rotation::about({1, 0, 0}, std::numbers::pi / 2);
     expect_falls_without_meeting(make_comb(8), {.pose = {upright, {-0.5, 0, -0.5}}},
-                                 sheet_at(0.03, 1.1, 20, {0, 0, -0.01}), 150);
+                                 sheet_at(0.03, 1.1, 20, {0, 0, -0.04}), 37);
 }
 
 TEST(SurfaceCollision, KeepsASheetOffABoxThatTurns) {
     const double turn_per_second = 2 * std::numbers::pi;
     for (const Vec3d& axis : {Vec3d{0, 0, 1}, Vec3d{1, 0.3, 0}})
         expect_falls_without_meeting(make_box({0.6, 0.4, 0.3}), {.angular_velocity = axis * turn_per_second},
-                                     sheet_at(0.4, 1, 20), 200);
+                                     sheet_at(0.4, 1, 20), 50);
 }
 
 /// Seven thicknesses a frame, over a side cut into hundreds of faces. Without friction nothing stops it.
 TEST(SurfaceCollision, LetsASheetSlideOverTheEdgesWithinAFlatSide) {
     constexpr double kThin = 0.003, kSpeed = 5;
-    Deformable sheet = sheet_at(0.0535, 0.2, 8, {kSpeed / 240, 0, 0});
-    Simulation simulation(
-        sheet, colliders_of({make_box({20, 2, 0.1}, 40)}),
-        {.drag = 0, .thickness = kThin, .friction = 0, .surface_collision = true, .self_collision = true});
-    for (int i = 0; i < 120; ++i) simulation.step();
+    Deformable sheet = sheet_at(0.0535, 0.2, 8, {kSpeed / 60, 0, 0});
+    Simulation simulation(sheet, colliders_of({make_box({20, 2, 0.1}, 40)}),
+                          {.air_drag = 0,
+                           .thickness = kThin,
+                           .friction = 0,
+                           .surface_collision = true,
+                           .self_collision = true});
+    for (int i = 0; i < 30; ++i) simulation.step();
     for (std::size_t i = 0; i < sheet.particle_count(); ++i) {
         const Vec3f way = simulation.positions()[i] - sheet.positions[i];
         EXPECT_NEAR(way.x, 0.5 * kSpeed, 1e-4) << i;
-        EXPECT_NEAR(way.z, 0.05 + kThin - 0.0535, 1e-4) << i;
+        EXPECT_GT(0.0535 + way.z, 0.05) << i;
+        EXPECT_LT(0.0535 + way.z, 0.05 + kThin + 1e-4) << i;
     }
 }
 
@@ -113,7 +117,7 @@ TEST(SurfaceCollision, KeepsASheetOffScaledAndMirroredModels) {
     for (const Vec3d& scale : {Vec3d{0.4, 0.6, 0.2}, Vec3d{-0.5, 0.3, 0.4}, Vec3d{0.1, -0.6, -0.4}})
         expect_falls_without_meeting(make_torus(1, 0.4, 24, 10),
                                      {.pose = {tilt, {0, 0, -0.4}}, .scale = scale},
-                                     sheet_at(0.35, 1, 20, {0, 0, -0.01}), 150);
+                                     sheet_at(0.35, 1, 20, {0, 0, -0.04}), 37);
 }
 
 TEST(SurfaceCollision, KeepsASheetOffTheFacesOfAModelWhateverTheMapBesideThemSays) {
@@ -123,8 +127,8 @@ TEST(SurfaceCollision, KeepsASheetOffTheFacesOfAModelWhateverTheMapBesideThemSay
          {ColliderMap(DistanceMap::build(ball)), ColliderMap(std::make_shared<AnalyticBall>(0.4F)),
           ColliderMap(std::make_shared<ConstantAnswer>(nonsense))}) {
         map.surface = ExactMap::build(ball);
-        Simulation simulation(sheet_at(0.42, 1.2, 25, {0, 0, -0.01}), {{.map = map}}, kSurfaces);
-        expect_nothing_meets(simulation, {ball}, 60);
+        Simulation simulation(sheet_at(0.42, 1.2, 25, {0, 0, -0.04}), {{.map = map}}, kSurfaces);
+        expect_nothing_meets(simulation, {ball}, 15);
     }
 }
 
@@ -136,25 +140,25 @@ TEST(SurfaceCollision, KeepsASheetOffTwoModelsOfWhichOneMoves) {
         colliders[moving].linear_velocity = {0, 0, 0.5};
         colliders[moving].angular_velocity = {0, 1, 2};
         Simulation simulation(sheet_at(0.4, 1.6, 25), colliders, kSurfaces);
-        expect_nothing_meets(simulation, models, 150);
+        expect_nothing_meets(simulation, models, 37);
     }
 }
 
 TEST(SurfaceCollision, KeepsAFastSheetOffAModel) {
     for (const double speed : {20.0, 50.0})
         expect_falls_without_meeting(make_torus(0.4, 0.15, 24, 10), {},
-                                     sheet_at(0.3, 1.2, 25, {0, 0, -speed / 240}), 80);
+                                     sheet_at(0.3, 1.2, 25, {0, 0, -speed / 60}), 20);
 }
 
 TEST(SurfaceCollision, KeepsACoarseSheetOffAModelThatIsSmallerThanItsFaces) {
     for (const TriangleMesh& model : {make_sphere(0.1, 12, 6), make_box({0.05, 0.05, 0.4})})
-        expect_falls_without_meeting(model, {}, sheet_at(0.3, 2, 6, {0.003, 0.002, -0.02}), 120);
+        expect_falls_without_meeting(model, {}, sheet_at(0.3, 2, 6, {0.012, 0.008, -0.08}), 30);
 }
 
 TEST(SurfaceCollision, KeepsAPinnedSheetOffAModelThatIsPushedIntoIt) {
     Deformable sheet = sheet_at(0.3, 1, 20);
     for (const std::size_t corner : {0u, 19u, 380u, 399u}) sheet.inverse_masses[corner] = 0;
-    expect_falls_without_meeting(make_sphere(0.2, 20, 10), {.linear_velocity = {0, 0, 1}}, sheet, 80);
+    expect_falls_without_meeting(make_sphere(0.2, 20, 10), {.linear_velocity = {0, 0, 1}}, sheet, 20);
 }
 
 TEST(SurfaceCollision, KeepsAThreadOverTheEdgeOfABox) {
@@ -165,32 +169,30 @@ TEST(SurfaceCollision, KeepsAThreadOverTheEdgeOfABox) {
             {i, i + 1, length(thread.positions[1] - thread.positions[0]), StickKind::Structural});
     thread.previous_positions = thread.positions;
     thread.inverse_masses.assign(thread.particle_count(), 1);
-    expect_falls_without_meeting(make_box({0.5, 0.5, 0.5}), {}, thread, 300);
+    expect_falls_without_meeting(make_box({0.5, 0.5, 0.5}), {}, thread, 75);
 }
 
 TEST(SurfaceCollision, LeavesASheetOverAThinPostLittleStretched) {
-    // Where it hangs over the edges, sticks and contact pull against each other: 92 % without more
-    // relaxations there.
-    Simulation simulation(make_cloth({.column_count = 60,
-                                      .row_count = 60,
+    Simulation simulation(make_cloth({.column_count = 31,
+                                      .row_count = 31,
                                       .width = 1.2,
                                       .height = 1.2,
                                       .pose = {{}, {0.02, 0.01, 0.52}}}),
                           colliders_of({make_box({0.04, 0.04, 1})}), kSurfaces);
-    for (int frame = 0; frame < 120; ++frame) simulation.step();
+    for (int frame = 0; frame < 30; ++frame) simulation.step();
     const Deformable& sheet = simulation.deformable();
     double largest = 0;
     for (const Stick& stick : sheet.sticks)
         if (stick.kind == StickKind::Structural)
             largest = std::max(largest, double{length(sheet.positions[stick.b] - sheet.positions[stick.a])} /
                                             stick.rest_length);
-    EXPECT_LT(largest, 1.6);
+    EXPECT_LT(largest, 1.1);
 }
 
 TEST(SurfaceCollision, KeepsASheetOnEitherSideOfAnOpenSurface) {
     // Above a dome, and in a bowl, whose inside is where the sheet is.
-    expect_falls_without_meeting(half_ball(true), {}, sheet_at(0.55, 1.2, 25, {0, 0, -0.01}), 200);
-    expect_falls_without_meeting(half_ball(false), {}, sheet_at(0.05, 0.7, 20, {0, 0, -0.01}), 200);
+    expect_falls_without_meeting(half_ball(true), {}, sheet_at(0.55, 1.2, 25, {0, 0, -0.04}), 50);
+    expect_falls_without_meeting(half_ball(false), {}, sheet_at(0.05, 0.7, 20, {0, 0, -0.04}), 50);
 }
 
 TEST(SurfaceCollision, KeepsASheetOffASurfaceWithHoles) {
@@ -199,23 +201,24 @@ TEST(SurfaceCollision, KeepsASheetOffASurfaceWithHoles) {
     for (std::size_t f = 0; f < torus.faces.size(); ++f)
         if (f % 5 != 0) faces.push_back(torus.faces[f]);
     torus.faces = faces;
-    expect_falls_without_meeting(torus, {}, sheet_at(0.25, 1.2, 25, {0, 0, -0.02}), 200);
-    expect_falls_without_meeting(torus, {.angular_velocity = {3, 0, 2}}, sheet_at(0.75, 1.2, 25), 200);
+    expect_falls_without_meeting(torus, {}, sheet_at(0.25, 1.2, 25, {0, 0, -0.08}), 50);
+    expect_falls_without_meeting(torus, {.angular_velocity = {3, 0, 2}}, sheet_at(0.75, 1.2, 25), 50);
 }
 
 TEST(SurfaceCollision, LeavesFreeFallAsItIs) {
     const std::vector<Collider> ball = colliders_of({make_sphere(0.4, 24, 12)});
     Simulation surfaces(sheet_at(0.6, 1, 20), ball, kSurfaces);
-    Simulation particles(sheet_at(0.6, 1, 20), ball, {.thickness = kSurfaceThickness});
-    for (int i = 0; i < 40; ++i) {
+    Simulation alone(sheet_at(0.6, 1, 20), {}, {.thickness = kSurfaceThickness});
+    for (int i = 0; i < 10; ++i) {
         surfaces.step();
-        particles.step();
-        ASSERT_EQ(surfaces.state_hash(), particles.state_hash());
+        alone.step();
+        ASSERT_EQ(surfaces.state_hash(), alone.state_hash());
     }
     ASSERT_EQ(surfaces.profile().contact_count, 0u);
 }
 
 TEST(SurfaceCollision, LetsASheetFallOnAModelFarFromTheOriginAsNearIt) {
+    double at_the_origin = 0;
     for (const double far : {0.0, 300.0, 3000.0}) {
         Deformable sheet = sheet_at(0.05, 1, 15);
         for (Vec3f& p : sheet.positions) p = Vec3f(Vec3d(p) + Vec3d{far, -far, far});
@@ -223,20 +226,22 @@ TEST(SurfaceCollision, LetsASheetFallOnAModelFarFromTheOriginAsNearIt) {
         std::vector<Collider> colliders = colliders_of({make_box({0.5, 0.5, 0.02}, 4)});
         colliders[0].pose.translation = {far, -far, far};
         Simulation simulation(sheet, colliders, kSurfaces);
-        for (int frame = 0; frame < 24; ++frame) simulation.step(); // a tenth of a second
+        for (int frame = 0; frame < 6; ++frame) simulation.step();
         const double corner = double{simulation.positions().front().z} - far;
-        EXPECT_NEAR(corner, 0.05 - 9.81 * 0.1 * 0.1 / 2, 0.003) << far;
+        if (far == 0) at_the_origin = corner;
+        EXPECT_NEAR(corner, at_the_origin, 0.003) << far;
+        EXPECT_LT(corner, 0.02) << far;
         EXPECT_EQ(simulation.profile().squeezed_count, 0U);
     }
 }
 
 TEST(SurfaceCollision, ComesToRestWithHardlyAVertexTruncatedAndAtItsThickness) {
     const std::vector<Collider> ball = colliders_of({make_sphere(1, 48, 24)});
-    Simulation simulation(sheet_at(1.05, 2, 30), ball, kSurfaces);
-    run_to_rest(simulation, 2000);
+    Simulation simulation(sheet_at(1.05, 2, 21), ball, kSurfaces);
+    run_to_rest(simulation, 600);
     const std::uint64_t before = simulation.profile().truncated_count;
-    for (int i = 0; i < 60; ++i) simulation.step();
-    EXPECT_LE(double(simulation.profile().truncated_count - before) / 60, 0.001 * 900);
+    for (int i = 0; i < 15; ++i) simulation.step();
+    EXPECT_EQ(simulation.profile().truncated_count, before);
     double sum = 0;
     int count = 0;
     for (const Vec3f& p : simulation.positions()) {
@@ -245,17 +250,19 @@ TEST(SurfaceCollision, ComesToRestWithHardlyAVertexTruncatedAndAtItsThickness) {
         sum += double{-near.depth};
         ++count;
     }
-    ASSERT_GT(count, 100);
+    ASSERT_GT(count, 50);
     EXPECT_LE(sum / count, 1.2 * kSurfaceThickness);
-    EXPECT_GE(sum / count, 0.9 * kSurfaceThickness);
+    EXPECT_GE(sum / count, 0.5 * kSurfaceThickness);
 }
 
-TEST(SurfaceCollision, SlidesDownASlopeLikeParticles) {
+TEST(SurfaceCollision, SlidesDownASlopeAsCoulombSays) {
     const ColliderMap box = ExactMap::build(make_box({2, 2, 1}));
     for (const double degrees : {35.0, 45.0}) {
         const double angle = degrees * std::numbers::pi / 180;
-        const float particles = slid_down_slope(box, angle);
-        EXPECT_NEAR(slid_down_slope(box, angle, {.surface_collision = true}), particles, 0.02 * particles);
+        // In half a second, with the friction 0.5.
+        const double expected = 9.81 * (std::sin(angle) - 0.5 * std::cos(angle)) * 0.5 * 0.5 / 2;
+        EXPECT_NEAR(slid_down_slope(box, angle, {.air_drag = 0, .surface_collision = true}), expected,
+                    0.1 * expected);
     }
 }
 
@@ -265,8 +272,8 @@ TEST(SurfaceCollision, GivesTheSameBitsOnEveryRunAndEveryInstructionSet) {
     options.self_collision = true;
     std::vector<std::uint64_t> hashes;
     const auto run = [&](std::string_view) {
-        Simulation simulation(sheet_at(0.2, 1.2, 25, {0, 0, -0.02}), colliders, options);
-        for (int i = 0; i < 100; ++i) simulation.step();
+        Simulation simulation(sheet_at(0.2, 1.2, 25, {0, 0, -0.08}), colliders, options);
+        for (int i = 0; i < 20; ++i) simulation.step();
         hashes.push_back(simulation.state_hash());
     };
     run("");
@@ -277,20 +284,20 @@ TEST(SurfaceCollision, GivesTheSameBitsOnEveryRunAndEveryInstructionSet) {
 TEST(SurfaceCollision, IsIndependentInACopy) {
     SimulationOptions options = kSurfaces;
     options.self_collision = true;
-    auto original = std::make_unique<Simulation>(sheet_at(0.2, 1.2, 20, {0, 0, -0.02}),
+    auto original = std::make_unique<Simulation>(sheet_at(0.2, 1.2, 20, {0, 0, -0.08}),
                                                  colliders_of({make_torus(0.4, 0.15, 24, 10)}), options);
-    for (int i = 0; i < 30; ++i) original->step();
+    for (int i = 0; i < 8; ++i) original->step();
     Simulation copy = *original;
     Simulation changed = *original;
     changed.set_particle_velocity(0, {0, 0, 5});
-    for (int i = 0; i < 30; ++i) {
+    for (int i = 0; i < 8; ++i) {
         original->step();
         changed.step();
     }
     const std::uint64_t expected = original->state_hash();
     EXPECT_NE(changed.state_hash(), expected);
     original.reset();
-    for (int i = 0; i < 30; ++i) copy.step();
+    for (int i = 0; i < 8; ++i) copy.step();
     EXPECT_EQ(copy.state_hash(), expected);
 }
 
@@ -307,7 +314,7 @@ TEST(SurfaceCollision, CountsWhatItCannotKeepApart) {
     sheet.attachments = {{0, 1}};
     Simulation simulation(sheet, colliders, kSurfaces);
     std::uint64_t frames_with_pairs = 0;
-    for (int i = 0; i < 60; ++i) {
+    for (int i = 0; i < 15; ++i) {
         simulation.step();
         frames_with_pairs += meeting_faces(simulation, models).empty() ? 0 : 1;
         if (frames_with_pairs > 0) ASSERT_GT(simulation.profile().squeezed_count, 0u);
@@ -315,7 +322,7 @@ TEST(SurfaceCollision, CountsWhatItCannotKeepApart) {
     EXPECT_GT(frames_with_pairs, 0u);
 }
 
-TEST(SurfaceCollision, CountsAsLostWhatTwoModelsHaveSqueezedInside) {
+TEST(SurfaceCollision, CountsAsSqueezedWhatTwoModelsHavePressedInside) {
     const std::vector<TriangleMesh> models{make_box({1, 1, 0.6}), make_box({1, 1, 0.6})};
     std::vector<Collider> colliders = colliders_of(models);
     for (const std::size_t i : {0u, 1u}) {
@@ -327,17 +334,15 @@ TEST(SurfaceCollision, CountsAsLostWhatTwoModelsHaveSqueezedInside) {
     options.gravity = {};
     Simulation simulation(sheet_at(0, 0.5, 8), colliders, options);
     std::uint64_t most_inside = 0;
-    for (int i = 0; i < 120; ++i) {
-        const std::uint64_t lost_before = simulation.profile().lost_count;
+    for (int i = 0; i < 30; ++i) {
         simulation.step();
         std::uint64_t inside = 0;
         for (const Collider& collider : simulation.colliders())
             for (const Vec3f& p : simulation.positions()) inside += contains(collider, p) ? 1 : 0;
-        ASSERT_EQ(simulation.profile().lost_count - lost_before, inside) << "in frame " << i;
         if (inside > 0) ASSERT_GT(simulation.profile().squeezed_count, 0u);
         most_inside = std::max(most_inside, inside);
         // They overlap by a fifth of a box, and part again.
-        if (i == 60)
+        if (i == 15)
             for (const std::size_t c : {0u, 1u})
                 simulation.set_collider_velocity(c, {0, 0, c == 0 ? 0.5 : -0.5}, {});
     }
@@ -345,15 +350,15 @@ TEST(SurfaceCollision, CountsAsLostWhatTwoModelsHaveSqueezedInside) {
 }
 
 TEST(SurfaceCollision, KeepsASheetOffAnAssemblyOfOpenParts) {
-    const Deformable sheet = sheet_at(1.1, 1.6, 24, {0, 0, -0.02});
-    expect_falls_without_meeting(assembly(60), {}, sheet, 120);
+    const Deformable sheet = sheet_at(1.1, 1.6, 24, {0, 0, -0.08});
+    expect_falls_without_meeting(assembly(60), {}, sheet, 30);
 }
 
 // In its notches a soup has no certain inside: particles may get in and be pushed out, but stay numbers.
 TEST(SurfaceCollision, OfParticlesOnlyKeepsPositionsFiniteOnASoup) {
     const TriangleMesh soup = exploded(make_torus(1, 0.4, 24, 12), 0.97F);
-    Simulation simulation(sheet_at(0.5, 1.6, 10, {0, 0, -0.02}), {{ExactMap::build(soup)}},
-                          {.thickness = kSurfaceThickness, .allow_open_colliders = true});
+    Simulation simulation(sheet_at(0.5, 1.6, 10, {0, 0, -0.08}), {{ExactMap::build(soup)}},
+                          jakobsen({.thickness = kSurfaceThickness, .allow_open_colliders = true}));
     for (int frame = 0; frame < 60; ++frame) simulation.step();
     for (const Vec3f& p : simulation.positions()) ASSERT_TRUE(is_finite(p));
 }

@@ -81,7 +81,8 @@ TEST(SimulationSetUp, RefusesAColliderWhoseScaleIsZeroOrNoNumber) {
     const ExactMap map = ExactMap::build(make_box({1, 1, 1}));
     const auto is_refused = [&](const Vec3d& scale) {
         try {
-            const Simulation simulation(make_cloth({}), {{.map = map}, {.map = map, .scale = scale}}, {});
+            const Simulation simulation(make_cloth({}), {{.map = map}, {.map = map, .scale = scale}},
+                                        test::jakobsen());
         } catch (const Error& error) {
             expect_names(error.what(), "collider 1");
             return error.code() == ErrorCode::InvalidOptions;
@@ -101,7 +102,8 @@ TEST(SimulationSetUp, RefusesWhatStandsTooFarAwayForFloats) {
     for (const ColliderMap& map : {ColliderMap(ExactMap::build(box)), ColliderMap(DistanceMap::build(box))}) {
         const Collider collider{.map = map, .name = "the house"};
         expect_error(ErrorCode::InvalidMesh, "the house" + words, [&] {
-            const Simulation simulation(make_cloth({.column_count = 3, .row_count = 3}), {collider}, {});
+            const Simulation simulation(make_cloth({.column_count = 3, .row_count = 3}), {collider},
+                                        test::jakobsen());
         });
     }
     expect_error(ErrorCode::InvalidMesh, "the cloth" + words, [&] { make_cloth(box, {}); });
@@ -116,7 +118,7 @@ TEST(SimulationSetUp, RefusesARotationThatIsNotOfUnitLength) {
                                      Rotation{kNaNOption, 0, 0, 0}}) {
         const std::vector<Collider> colliders{{.map = map}, {.map = map, .pose = {rotation, {}}}};
         test::expect_error(ErrorCode::InvalidOptions, "collider 1 has the rotation",
-                           [&] { Simulation(make_cloth({}), colliders, {}); });
+                           [&] { Simulation(make_cloth({}), colliders, test::jakobsen()); });
         test::expect_error(ErrorCode::InvalidOptions, "the cloth has the rotation", [&] {
             make_cloth({.pose = {rotation, {}}});
         });
@@ -128,7 +130,8 @@ TEST(SimulationSetUp, BringsARotationThatWasRoundedToUnitLength) {
     const Rotation rounded{float(exact.w), float(exact.x), float(exact.y), float(exact.z)};
     const ExactMap map = ExactMap::build(make_box({1, 1, 1}));
     const Simulation simulation(make_cloth({}),
-                                {{.map = map, .pose = {rounded, {}}}, {.map = map, .pose = {exact, {}}}}, {});
+                                {{.map = map, .pose = {rounded, {}}}, {.map = map, .pose = {exact, {}}}},
+                                test::jakobsen());
     const Rotation& r = simulation.colliders()[0].pose.rotation;
     EXPECT_NEAR(r.w * r.w + r.x * r.x + r.y * r.y + r.z * r.z, 1, 1e-15);
     EXPECT_NEAR(r.w, exact.w, 1e-6);
@@ -141,9 +144,9 @@ TEST(SimulationSetUp, RefusesTheExactMapOfAnOpenMeshUnlessItIsAllowed) {
     const std::vector<Collider> colliders{{.map = ExactMap::build(open)}};
     test::expect_error(ErrorCode::InvalidOptions,
                        "collider 0 has the exact map of an open mesh, with 3 edges",
-                       [&] { Simulation(make_cloth({}), colliders, {}); });
-    EXPECT_NO_THROW(Simulation(make_cloth({}), colliders, {.allow_open_colliders = true}));
-    EXPECT_NO_THROW(Simulation(make_cloth({}), {{.map = DistanceMap::build(open)}}, {}));
+                       [&] { Simulation(make_cloth({}), colliders, test::jakobsen()); });
+    EXPECT_NO_THROW(Simulation(make_cloth({}), colliders, test::jakobsen({.allow_open_colliders = true})));
+    EXPECT_NO_THROW(Simulation(make_cloth({}), {{.map = DistanceMap::build(open)}}, test::jakobsen()));
 }
 
 TEST(SimulationSetUp, KeepsHalfTheSpacingOfTheParticlesAwayUnlessToldOtherwise) {
@@ -152,7 +155,7 @@ TEST(SimulationSetUp, KeepsHalfTheSpacingOfTheParticlesAwayUnlessToldOtherwise) 
     };
     const Deformable sheet = make_cloth({.column_count = 11, .row_count = 11, .width = 2, .height = 2});
     EXPECT_NEAR(thickness(sheet, {}), 0.1, 1e-6);
-    EXPECT_EQ(thickness(sheet, {.thickness = 0}), 0);
+    EXPECT_EQ(thickness(sheet, test::jakobsen({.thickness = 0})), 0);
     EXPECT_EQ(thickness(sheet, {.thickness = 0.3}), 0.3);
     Deformable loose = sheet;
     loose.sticks.clear();
@@ -220,7 +223,7 @@ TEST(SimulationSetUp, NamesTheFacesWithWhichADeformableBeginsIntersecting) {
     test::expect_error(ErrorCode::InvalidOptions, "the edge from particle 0 to 1 and its face ",
                        [&] { Simulation(thread, box, surfaces); });
     // Particles alone may begin anywhere.
-    EXPECT_NO_THROW(Simulation(wide, box, {}));
+    EXPECT_NO_THROW(Simulation(wide, box, test::jakobsen()));
 }
 
 TEST(SimulationSetUp, RefusesADeformableThatLiesOnAModelAsNearAsTheLatticeOfItsMapTells) {
@@ -231,7 +234,7 @@ TEST(SimulationSetUp, RefusesADeformableThatLiesOnAModelAsNearAsTheLatticeOfItsM
                            "begins touching the table with 128 faces: face 0, face 1, face 2, ...; move",
                            [&] { Simulation(sheet_at(height, 2, 9), table, surfaces); });
     EXPECT_NO_THROW(Simulation(sheet_at(0.50002, 2, 9), table, surfaces));
-    EXPECT_NO_THROW(Simulation(sheet_at(0.5, 2, 9), table, {}));
+    EXPECT_NO_THROW(Simulation(sheet_at(0.5, 2, 9), table, test::jakobsen()));
 }
 
 TEST(SimulationSetUp, RefusesLayersThatFloatsDoNotTellApartSoFarFromTheOrigin) {

@@ -20,6 +20,13 @@ inline Deformable sheet_at(double height, double width, std::uint32_t count, con
     return sheet;
 }
 
+/// The paper's solver, in its usual steps unless told otherwise.
+inline SimulationOptions jakobsen(SimulationOptions options = {}) {
+    options.solver = SolverKind::Jakobsen;
+    if (options.time_step == SimulationOptions{}.time_step) options.time_step = 1.0 / 240;
+    return options;
+}
+
 /// Runs until rest; fails when that takes more than `frame_limit` frames.
 inline void run_to_rest(Simulation& simulation, std::uint32_t frame_limit) {
     while (!simulation.at_rest() && simulation.frame() < frame_limit) simulation.step();
@@ -44,7 +51,7 @@ inline float slid_down_slope(const ColliderMap& box, double angle_rad, Simulatio
     Simulation simulation(sheet, {{.map = box, .pose = {tilt, {}}}}, options);
     const std::size_t middle = kSide * kSide / 2;
     const Vec3f before = simulation.positions()[middle];
-    for (int i = 0; i < 120; ++i) simulation.step();
+    while (simulation.frame() * options.time_step < 0.5) simulation.step();
     return length(simulation.positions()[middle] - before);
 }
 

@@ -33,8 +33,8 @@ inline VertexCache growing_cache(const TriangleMesh& mesh) {
             .samples = std::make_shared<const std::vector<Vec3f>>(std::move(samples))};
 }
 
-/// Small ones that between them have every part of a state: a cloth on a model that deforms and on one that
-/// follows keys, and soft bodies among distance maps.
+/// Small ones that between them have every part of a state: a cloth and a soft body on a model that deforms
+/// and on one that follows keys, and particles among maps of two kinds.
 inline std::vector<Simulation> simulations_to_attack() {
     const TriangleMesh ball = make_sphere(0.2, 6, 4);
     Deformable sheet = make_cloth(
@@ -42,22 +42,19 @@ inline std::vector<Simulation> simulations_to_attack() {
     sheet.inverse_masses[5] = 0;
     sheet.attachments = {{5, 0}};
     std::vector<Simulation> all;
+    const Deformable body = make_soft_body(make_solid_box({0.1, 0.1, 0.1}, {2, 2, 2}),
+                                           {.young_modulus = 1e4, .pose = {{}, {0.4, 0, 0.26}}});
+    all.emplace_back(combine(std::vector{sheet, body}),
+                     std::vector<Collider>{{.map = ExactMap::build(ball)},
+                                           {.map = ExactMap::build(ball), .pose = {{}, {0.4, 0, 0}}}},
+                     SimulationOptions{.thickness = 0.01, .surface_collision = true, .self_collision = true});
+    all[0].set_collider_cache(0, growing_cache(ball));
+    all[0].set_collider_keyframes(1, {{0, {{}, {0.4, 0, 0}}}, {0.1, {{}, {0.3, 0, 0}}}});
     all.emplace_back(
         sheet,
         std::vector<Collider>{{.map = ExactMap::build(ball)},
-                              {.map = ExactMap::build(ball), .pose = {{}, {0.4, 0, 0}}}},
-        SimulationOptions{
-            .thickness = 0.01, .surface_collision = true, .self_collision = true, .measure_loads = true});
-    all[0].set_collider_cache(0, growing_cache(ball));
-    all[0].set_collider_keyframes(1, {{0, {{}, {0.4, 0, 0}}}, {0.1, {{}, {0.3, 0, 0}}}});
-    const Deformable body = make_soft_body(make_solid_box({0.1, 0.1, 0.1}, {2, 2, 2}),
-                                           {.young_modulus = 1e4, .pose = {{}, {0, 0, 0.26}}});
-    all.emplace_back(
-        body,
-        std::vector<Collider>{{.map = ExactMap::build(ball)},
                               {.map = DistanceMap::build(ball), .pose = {{}, {0.4, 0, 0}}}},
-        SimulationOptions{
-            .solver = SolverKind::Xpbd, .iteration_count = 1, .substep_count = 2, .thickness = 0.01});
+        SimulationOptions{.solver = SolverKind::Jakobsen, .time_step = 1.0 / 240, .thickness = 0.01});
     return all;
 }
 

@@ -103,12 +103,12 @@ inline double elastic_energy(const ElasticTetrahedron& tetrahedron, std::span<co
 /// Of motion and of elasticity.
 inline double energy(const Simulation& simulation) {
     const Deformable& body = simulation.deformable();
-    const double substep = simulation.options().time_step / simulation.options().substep_count;
+    const double step = simulation.options().time_step;
     double sum = 0;
     for (std::size_t i = 0; i < body.particle_count(); ++i) {
         if (body.inverse_masses[i] == 0) continue;
         const Vec3d way = Vec3d(body.positions[i]) - Vec3d(body.previous_positions[i]);
-        sum += dot(way, way) / (substep * substep * double{body.inverse_masses[i]}) / 2;
+        sum += dot(way, way) / (step * step * double{body.inverse_masses[i]}) / 2;
     }
     for (const ElasticTetrahedron& tetrahedron : body.tetrahedra)
         sum += elastic_energy(tetrahedron, body.positions);
