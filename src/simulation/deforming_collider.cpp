@@ -124,13 +124,6 @@ void DeformingCollider::build_ahead(double end_time) {
     prepared_vertices_ = std::move(goal);
 }
 
-void DeformingCollider::begin_frame(Collider& collider, const Particles& particles,
-                                    std::span<const float> clearances, float reach, const Workers& workers) {
-    const Collider before = collider;
-    begin_frame(collider);
-    if (deforms_) find_carried(before, particles, clearances, reach, workers);
-}
-
 void DeformingCollider::begin_frame(Collider& collider) {
     if (prepared_map_) {
         next_map_ = std::exchange(prepared_map_, std::nullopt);
@@ -186,60 +179,10 @@ void DeformingCollider::find_motion(const Collider& collider) {
     const std::size_t count = vertices_.size();
     motion_.from.resize(count);
     motion_.to.resize(count);
-    float most_sq = 0;
     for (std::size_t i = 0; i < count; ++i) {
-        const Vec3f from = scaled(vertices_[i], collider.scale),
-                    to = scaled(next_vertices_[i], collider.scale);
-        motion_.from.set(i, from);
-        motion_.to.set(i, to);
-        most_sq = std::max(most_sq, dot(to - from, to - from));
+        motion_.from.set(i, scaled(vertices_[i], collider.scale));
+        motion_.to.set(i, scaled(next_vertices_[i], collider.scale));
     }
-    motion_.most = std::sqrt(most_sq);
-}
-
-/// As the point of the surface that is nearest when the frame begins. What is farther off goes the mean way
-/// of all vertices, as if the collider were rigid, and what is between fades: a body that is wider than the
-/// reach is then led as a whole, not torn where the reach ends.
-void DeformingCollider::find_carried(const Collider& collider, const Particles& particles,
-                                     std::span<const float> clearances, float reach, const Workers& workers) {
-    constexpr std::size_t kPointsPerPiece = 256;
-    constexpr float kFading = 4; // times the longest way: then ways differ by a quarter of the distance
-    const float fading = kFading * motion_.most;
-    const Vec3f mean = mean_way();
-    motion_.carried.resize(particles.count());
-    near_.clear();
-    near_positions_.clear();
-    for (std::uint32_t i = 0; i < particles.count(); ++i) {
-        motion_.carried.set(i, mean);
-        if (clearances[i] > reach + fading) continue;
-        near_.push_back(i);
-        near_positions_.push_back(particles.positions[i]);
-    }
-    contacts_.resize(near_.size());
-    workers.for_ranges(near_.size(), kPointsPerPiece,
-                       [&](std::size_t, std::size_t, std::size_t begin, std::size_t end) {
-                           contacts_batch(collider, std::span(near_positions_).subspan(begin, end - begin),
-                                          reach + fading, std::span(contacts_).subspan(begin, end - begin));
-                       });
-    const FrameChange body(collider.pose, {1, 1, 1});
-    for (std::size_t n = 0; n < near_.size(); ++n) {
-        if (!contacts_[n].found() || contacts_[n].face == Contact::kUnknownFace) continue;
-        const Triangle& face = (*faces_)[static_cast<std::size_t>(contacts_[n].face)];
-        const auto shares =
-            shares_in(std::array{motion_.from[face[0]], motion_.from[face[1]], motion_.from[face[2]]},
-                      body.point_to_local(contacts_[n].point));
-        Vec3f way;
-        for (std::size_t k = 0; k < 3; ++k) way += (motion_.to[face[k]] - motion_.from[face[k]]) * shares[k];
-        const float beyond = std::max(std::fabs(contacts_[n].depth) - reach, 0.0F);
-        const float share = beyond > 0 ? std::max(1 - beyond / fading, 0.0F) : 1;
-        motion_.carried.set(near_[n], mean + (way - mean) * share);
-    }
-}
-
-Vec3f DeformingCollider::mean_way() const {
-    Vec3d sum;
-    for (std::size_t i = 0; i < vertices_.size(); ++i) sum += Vec3d(motion_.to[i] - motion_.from[i]);
-    return Vec3f(sum * (1 / static_cast<double>(vertices_.size())));
 }
 
 } // namespace echinus

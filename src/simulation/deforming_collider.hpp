@@ -1,6 +1,5 @@
 #pragma once
 
-#include "geometry/workers.hpp"
 #include "simulation/state/state_archive.hpp"
 #include "simulation/surface_motion.hpp"
 
@@ -43,12 +42,6 @@ class DeformingCollider {
     void build_ahead(double end_time);
     /// Gives the collider the map of the frame's end, for which build_ahead() was called.
     void begin_frame(Collider& collider);
-    /// The same, and finds what the surface carries.
-    /// @param clearances  lower bounds of the particles' distances from the surface
-    /// @param reach       particles so near are beside it
-    /// @param workers     share the queries of the particles
-    void begin_frame(Collider& collider, const Particles& particles, std::span<const float> clearances,
-                     float reach, const Workers& workers);
     /// As it was before it deformed.
     const ExactMap& first_map() const { return first_map_; }
     /// Reading gives the collider the map of the surface as it is.
@@ -72,9 +65,6 @@ class DeformingCollider {
     template <typename Build>
     ExactMap naming_it(const std::string& vertices, const Build& build) const;
     void find_motion(const Collider& collider);
-    Vec3f mean_way() const;
-    void find_carried(const Collider& collider, const Particles& particles, std::span<const float> clearances,
-                      float reach, const Workers& workers);
 
     std::string name_;
     ExactMap first_map_;
@@ -93,9 +83,6 @@ class DeformingCollider {
     std::optional<ExactMap> prepared_map_; ///< of these
     bool deforms_ = false;
     SurfaceMotion motion_;
-    std::vector<std::uint32_t> near_;   ///< particles that may be beside the surface,
-    std::vector<Vec3f> near_positions_; ///< where they are,
-    std::vector<Contact> contacts_;     ///< and what is nearest to them
 };
 
 } // namespace echinus

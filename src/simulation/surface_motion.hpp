@@ -12,14 +12,9 @@ struct SurfaceMotion {
     PointArrays at(float share) const {
         PointArrays places = to;
         if (share == 1) return places;
-        for (std::size_t v = 0; v + PointArrays::kPadding < places.x.size(); ++v)
-            places.set(v, from[v] + (to[v] - from[v]) * share);
+        for (std::size_t v = 0; v < places.x.size(); ++v) places.set(v, from[v] + (to[v] - from[v]) * share);
         return places;
     }
-    float most = 0; ///< no vertex goes farther
-    /// [particle_count] The way of the surface beside each particle, the mean way of all vertices where none
-    /// is near: one that goes it stays beside the surface, as one does that a rigid model takes along.
-    PointArrays carried;
 };
 
 } // namespace echinus

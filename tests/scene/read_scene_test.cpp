@@ -20,6 +20,7 @@ const char* const kFullScene = R"({
     "model": "horse.3ds",
     "repair": ["doubled_patches", "inside_out"],
     "map": {"kind": "distance", "directions": [128, 64], "correction": "paper", "entries": "unorm16", "pole_axis": "y"},
+    "solver": "jakobsen",
     "collider": {"position": [1, 2, 3], "rotation": {"axis": [0, 0, 2], "degrees": 90}, "scale": 2.5,
                  "linear_velocity": [0.1, 0.2, 0.3], "angular_velocity": [0, 180, 0]},
     "cloth": {"particles": [20, 30], "size": [1.5, 2], "position": [4, 5, 6],
@@ -32,11 +33,11 @@ const char* const kFullScene = R"({
 /// One whose cloth is a mesh, likewise.
 const char* const kMeshScene = R"({
     "model": {"torus": {"major": 2, "minor": 0.5, "segments": [12, 8]}},
-    "cloth": {"mesh": "shirt.obj", "rest_mesh": "shirt_flat.obj", "bending": "sticks", "scale": 0.5,
+    "cloth": {"mesh": "shirt.obj", "rest_mesh": "shirt_flat.obj", "scale": 0.5,
               "position": [4, 5, 6], "rotation": {"axis": [1, 0, 0], "degrees": -90}, "velocity": [1, 2, -3],
               "thickness": 0.02, "self_thickness": 0.03, "pins": [3, 5],
               "attachments": {"from": [-1, -2, -3], "to": [1, 2, 3]}},
-    "surface_collision": true, "self_collision": true, "untangle": true, "thread_count": 3, "multilevel": true
+    "surface_collision": true, "self_collision": true, "untangle": true, "thread_count": 3
 })";
 
 std::string refusal(const std::string& text) {
@@ -145,7 +146,6 @@ TEST(Scene, OfAMeshIsReadKeyByKey) {
     const MeshCloth& cloth = *scene.mesh_cloth;
     EXPECT_EQ(std::get<ModelFile>(cloth.mesh).name, "shirt.obj");
     EXPECT_EQ(std::get<ModelFile>(cloth.rest_mesh.value()).name, "shirt_flat.obj");
-    EXPECT_EQ(cloth.bending, BendingKind::Sticks);
     EXPECT_EQ(cloth.scale, 0.5);
     EXPECT_EQ(cloth.pose.translation, (Vec3d{4, 5, 6}));
     EXPECT_NEAR(length(cloth.pose.rotation.apply({0, 0, 1}) - Vec3d{0, 1, 0}), 0, 1e-12);
@@ -156,7 +156,6 @@ TEST(Scene, OfAMeshIsReadKeyByKey) {
     EXPECT_TRUE(scene.simulation.self_collision);
     EXPECT_TRUE(scene.simulation.untangle);
     EXPECT_EQ(scene.simulation.thread_count, 3u);
-    EXPECT_TRUE(scene.simulation.multilevel);
     EXPECT_EQ(std::get<std::vector<std::uint32_t>>(cloth.pins), (std::vector<std::uint32_t>{3, 5}));
     ASSERT_EQ(scene.cloth_attachments.size(), 1u);
     EXPECT_EQ(scene.cloth_attachments[0].collider, 0u);
@@ -286,23 +285,58 @@ TEST(Scene, RefusesTheKeysOfTheOtherKindOfMap) {
     EXPECT_NE(refusal_of_map(R"({"budgets": 9})"), "");
 }
 
-TEST(Scene, ChoosesTheSolverAndGivesEachItsOwnMaterial) {
+TEST(Scene, HasTheNewtonSolverAndItsStepUnlessItSaysOtherwise) {
     const auto options_of = [](const std::string& rest) {
         return parse_scene(R"({"model": "a", "cloth": {"size": [1, 1]})" + rest + "}", "a.json").simulation;
     };
-    EXPECT_EQ(options_of("").solver, SolverKind::Verlet);
-    EXPECT_EQ(options_of(R"(, "solver": "verlet")").iteration_count, 10u);
-    const SimulationOptions small_steps = options_of(R"(, "solver": "xpbd")");
-    EXPECT_EQ(small_steps.solver, SolverKind::Xpbd);
-    EXPECT_EQ(small_steps.substep_count, 10u);
-    EXPECT_EQ(small_steps.iteration_count, 1u);
-    const SimulationOptions full =
-        options_of(R"(, "solver": "xpbd", "substeps": 7, "iterations": 3, "material": {"friction": 0.25,
-            "compliance": {"structural": 1e-7, "shear": 2e-6, "bending": 0.5}})");
-    EXPECT_EQ(full.substep_count, 7u);
-    EXPECT_EQ(full.iteration_count, 3u);
-    EXPECT_EQ(full.compliance, (std::array{1e-7, 2e-6, 0.5}));
-    EXPECT_EQ(full.friction, 0.25);
+    EXPECT_EQ(options_of("").solver, SolverKind::Newton);
+    EXPECT_EQ(options_of("").time_step, 1.0 / 60);
+    EXPECT_EQ(options_of(R"(, "solver": "newton")").solver, SolverKind::Newton);
+    EXPECT_EQ(options_of(R"(, "solver": "jakobsen")").solver, SolverKind::Jakobsen);
+    EXPECT_EQ(options_of(R"(, "solver": "jakobsen")").time_step, 1.0 / 240);
+    EXPECT_EQ(options_of(R"(, "solver": "jakobsen", "time_step": 0.01)").time_step, 0.01);
+}
+
+TEST(Scene, OfAnEarlierVersionIsReadWithAWarningForEachKeyThatHasNoEffectAnyMore) {
+    const Scene scene = parse_scene(R"({"model": "a", "solver": "xpbd", "substeps": 7, "iterations": 3,
+            "multilevel": true, "time_step": 0.004, "cloth": {"mesh": "b", "bending": "sticks"},
+            "material": {"structural": 1, "shear": 0.5, "bending": 0.05, "drag": 0.01, "friction": 0.25,
+                         "compliance": {"structural": 1e-7, "any": 0}}})",
+                                    "a.json");
+    EXPECT_EQ(scene.simulation.solver, SolverKind::Newton);
+    EXPECT_EQ(scene.simulation.friction, 0.25);
+    EXPECT_EQ(scene.simulation.time_step, 0.004);
+    const std::vector<std::array<std::string, 2>> expected{
+        {"solver", "write \"newton\", or \"jakobsen\""},
+        {"iterations", "see newton_steps"},
+        {"substeps", "leave it out"},
+        {"multilevel", "leave it out"},
+        {"cloth.bending", "by angles"},
+        {"material.structural", "write material.stretch_stiffness, in N/m"},
+        {"material.shear", "write material.shear_stiffness, in N/m"},
+        {"material.bending", "write material.bending_stiffness, in N m"},
+        {"material.drag", "write material.air_drag, in 1/s"},
+        {"material.compliance", "write material.stretch_stiffness"}};
+    ASSERT_EQ(scene.warnings.size(), expected.size());
+    for (std::size_t i = 0; i < expected.size(); ++i) {
+        const auto& [key, remedy] = expected[i];
+        EXPECT_EQ(scene.warnings[i].rfind("a.json: the key " + key + " has no effect ", 0), 0u)
+            << scene.warnings[i];
+        EXPECT_NE(scene.warnings[i].find(remedy), std::string::npos) << scene.warnings[i];
+    }
+    EXPECT_EQ(parse_scene(R"({"model": "a", "solver": "verlet", "cloth": {"size": [1, 1]}})", "a.json")
+                  .simulation.solver,
+              SolverKind::Newton);
+}
+
+TEST(Scene, OfThisVersionHasNoWarnings) {
+    EXPECT_TRUE(parse_scene(kFullScene, "a.json").warnings.empty());
+    EXPECT_TRUE(parse_scene(kMeshScene, "a.json").warnings.empty());
+    const Scene scene = parse_scene(R"({"model": "a", "solver": "jakobsen", "substeps": 2,
+            "cloth": {"size": [1, 1]}, "material": {"structural": 1, "drag": 0.1}})",
+                                    "a.json");
+    ASSERT_EQ(scene.warnings.size(), 1u);
+    EXPECT_NE(scene.warnings[0].find("substeps"), std::string::npos);
 }
 
 TEST(Scene, TakesTheMaterialOfTheNewtonSolver) {
@@ -330,16 +364,13 @@ TEST(Scene, HasSticksAndParticlesOnlyUnderJakobsensSolver) {
     EXPECT_EQ(scene.simulation.solver, SolverKind::Jakobsen);
     EXPECT_EQ(scene.simulation.iteration_count, 4u);
     EXPECT_EQ(scene.simulation.stiffness[1], 0.5);
-    EXPECT_EQ(scene.mesh_cloth->bending, BendingKind::Sticks);
     EXPECT_FALSE(scene.simulation.surface_collision);
     EXPECT_FALSE(scene.simulation.self_collision);
     const auto refusal_of = [&](const std::string& cloth, const std::string& rest) {
         return refusal(text(cloth, rest));
     };
-    EXPECT_EQ(refusal_of(R"("mesh": "b", "bending": "angles")", ""),
-              R"(a.json: cloth.bending is "angles"; it must be "sticks", or another solver than "jakobsen")");
     EXPECT_EQ(refusal_of(R"("size": [1, 1])", R"(, "surface_collision": true)"),
-              R"(a.json: surface_collision is true; it must be false, or another solver than "jakobsen")");
+              R"(a.json: surface_collision is true; it must be false, or "solver" must be "newton")");
     EXPECT_NE(refusal_of(R"("size": [1, 1])", R"(, "self_collision": true)").find("self_collision"),
               std::string::npos);
     EXPECT_NE(
@@ -355,38 +386,27 @@ TEST(Scene, RefusesTheKeysOfTheOtherSolver) {
         return refusal(R"({"model": "a", "cloth": {"size": [1, 1]}, )" + rest + "}");
     };
     EXPECT_EQ(refusal_of(R"("wind": [0, 1, 0])"), "a.json: the key wind_rate is missing");
-    EXPECT_EQ(refusal_of(R"("substeps": 4)"),
-              R"(a.json: substeps is 4; it must be left out, or "solver" must be "xpbd")");
-    EXPECT_EQ(refusal_of(R"("material": {"compliance": {}})"),
-              R"(a.json: material.compliance is {}; it must be left out, or "solver" must be "xpbd")");
-    EXPECT_EQ(
-        refusal_of(R"("solver": "xpbd", "material": {"shear": 1})"),
-        R"(a.json: material.shear is 1; it must be left out, or "solver" must be "verlet" or "jakobsen")");
-    EXPECT_EQ(
-        refusal_of(R"("solver": "newton", "iterations": 3)"),
-        R"(a.json: iterations is 3; it must be left out, or "solver" must be "verlet", "xpbd" or "jakobsen")");
-    EXPECT_EQ(refusal_of(R"("material": {"density": 1})"),
+    EXPECT_EQ(refusal_of(R"("solver": "jakobsen", "material": {"density": 1})"),
               R"(a.json: material.density is 1; it must be left out, or "solver" must be "newton")");
-    EXPECT_EQ(refusal_of(R"("solver": "pbd")"),
-              R"(a.json: solver is "pbd"; it must be "verlet", "xpbd", "newton" or "jakobsen")");
-    EXPECT_EQ(refusal_of(R"("solver": "xpbd", "substeps": 0)"),
-              "a.json: substeps is 0; it must be a whole number from 1 to 1000000");
-    EXPECT_EQ(refusal_of(R"("solver": "xpbd", "material": {"compliance": {"bending": -1}})"),
-              "a.json: material.compliance.bending is -1; it must be a number from 0 to 1e+09");
-    EXPECT_EQ(
-        refusal_of(R"("solver": "xpbd", "material": {"compliance": {"bendin": 1}})"),
-        R"(a.json: there is no key "material.compliance.bendin"; the nearest is "material.compliance.bending")");
+    EXPECT_EQ(refusal_of(R"("solver": "jakobsen", "newton_steps": 3)"),
+              R"(a.json: newton_steps is 3; it must be left out, or "solver" must be "newton")");
+    EXPECT_NE(refusal_of(R"("solver": "pbd")").find(R"(solver is "pbd"; it must be "newton", "jakobsen")"),
+              std::string::npos);
+    EXPECT_EQ(refusal_of(R"("solver": "jakobsen", "iterations": 0)"),
+              "a.json: iterations is 0; it must be a whole number from 1 to 1000000");
 }
 
-TEST(Scene, ThrowsTheClothAtItsVelocityInSubstepsToo) {
-    const Scene scene =
-        parse_scene(R"({"model": {"box": {}}, "solver": "xpbd", "substeps": 4, "gravity": [0, 0, 0],
-        "material": {"drag": 0}, "time_step": 0.01,
-        "cloth": {"size": [1, 1], "particles": [2, 2], "position": [0, 0, 5], "velocity": [0, 0, 3]}})",
-                    "a.json");
-    Simulation simulation = make_simulation(scene, ExactMap::build(make_box({1, 1, 1})));
-    for (int i = 0; i < 100; ++i) simulation.step();
-    EXPECT_NEAR(simulation.positions()[0].z, 5 + 3, 1e-3);
+TEST(Scene, ThrowsTheClothAtItsVelocityUnderEitherSolver) {
+    for (const std::string rest :
+         {R"("material": {"air_drag": 0})", R"("solver": "jakobsen", "material": {"drag": 0})"}) {
+        const Scene scene = parse_scene(R"({"model": {"box": {}}, "gravity": [0, 0, 0], "time_step": 0.01,
+            "cloth": {"size": [1, 1], "particles": [2, 2], "position": [0, 0, 5], "velocity": [0, 0, 3]}, )" +
+                                            rest + "}",
+                                        "a.json");
+        Simulation simulation = make_simulation(scene, ExactMap::build(make_box({1, 1, 1})));
+        for (int i = 0; i < 100; ++i) simulation.step();
+        EXPECT_NEAR(simulation.positions()[0].z, 5 + 3, 1e-3);
+    }
 }
 
 TEST(Scene, ScalesTheColliderByOneNumberOrThree) {
@@ -401,7 +421,7 @@ TEST(Scene, ScalesTheColliderByOneNumberOrThree) {
 
 TEST(Scene, ThrowsTheClothAtItsVelocityButForThePins) {
     const Scene scene = parse_scene(R"({"model": {"box": {}}, "time_step": 0.01, "gravity": [0, 0, 0],
-        "material": {"drag": 0}, "cloth": {"size": [1, 1], "particles": [2, 2], "position": [0, 0, 5],
+        "cloth": {"size": [1, 1], "particles": [2, 2], "position": [0, 0, 5],
         "velocity": [0, 0, 3], "pins": [[0, 0]]}})",
                                     "a.json");
     const Simulation simulation = make_simulation(scene, build_map(make_mesh(BoxModel{}), scene.map));

@@ -249,12 +249,12 @@ TEST(SelfCollision, LeavesNoKnotInASheetThatHitsABallFast) {
 TEST(SelfCollision, OpensTheKnotOfASheetThatWasFoldedInFourTooSharply) {
     Simulation simulation(knotted({}), {},
                           {.gravity = {}, .surface_collision = true, .self_collision = true});
-    expect_nothing_meets(simulation, {}, 4);
-    const std::uint64_t in_the_beginning = simulation.profile().truncated_count;
-    expect_nothing_meets(simulation, {}, 10);
-    EXPECT_GT(in_the_beginning, 0u);
-    EXPECT_EQ(simulation.profile().truncated_count, in_the_beginning);
-    EXPECT_LT(simulation.residual().largest, 0.5);
+    for (int frame = 0; frame < 40; ++frame) {
+        simulation.step();
+        ASSERT_TRUE(meeting_faces(simulation, {}).empty()) << frame;
+    }
+    EXPECT_EQ(simulation.profile().squeezed_count, 0u);
+    EXPECT_LT(simulation.residual().largest, 0.2);
 }
 
 TEST(SelfCollision, LetsASheetWithoutFrictionSlideOverAnother) {
@@ -328,7 +328,6 @@ TEST(SelfCollision, HoldsLayersOfWhatFliesBackFromEachOtherAndNotInTheAir) {
         const Deformable sheet = knotted(step);
         Simulation simulation(sheet, colliders, options);
         for (int i = 0; i < 6; ++i) simulation.step();
-        EXPECT_GT(simulation.profile().truncated_count, 0u);
         EXPECT_EQ(simulation.profile().squeezed_count, 0u);
         const Vec3d way = mean_of(simulation.positions()) - mean_of(sheet.positions);
         EXPECT_NEAR(length(way - step * 6), 0, 0.02) << way.x << ' ' << way.y << ' ' << way.z;
@@ -352,7 +351,6 @@ TEST(SelfCollision, KeepsTheMomentumOfASheetThatUnfoldsInTheAir) {
             sheet, colliders,
             {.gravity = {}, .air_drag = 0, .surface_collision = true, .self_collision = true});
         for (int i = 0; i < 40; ++i) simulation.step();
-        EXPECT_GT(simulation.profile().truncated_count, 0u);
         EXPECT_EQ(simulation.profile().squeezed_count, 0u);
         const Vec3d before = mean_of(simulation.positions());
         for (int i = 0; i < 6; ++i) simulation.step();
