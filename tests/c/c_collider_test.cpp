@@ -204,7 +204,10 @@ TEST(CCustomMaps, AreReleasedWithTheLastSimulation) {
     CDeformable cloth;
     expect_ok(echinus_deformable_cloth(nullptr, out(cloth)));
     CSimulation simulation, copy;
-    expect_ok(echinus_simulation_create(cloth.get(), &collider, 1, nullptr, out(simulation)));
+    echinus_simulation_options options;
+    echinus_simulation_options_init(&options, sizeof options);
+    options.solver = ECHINUS_SOLVER_JAKOBSEN;
+    expect_ok(echinus_simulation_create(cloth.get(), &collider, 1, &options, out(simulation)));
     expect_ok(echinus_simulation_copy(simulation.get(), out(copy)));
     map.reset();
     simulation.reset();

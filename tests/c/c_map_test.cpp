@@ -185,7 +185,10 @@ TEST(CMapViews, ReadInPlaceAndReleaseWhenTheLastUserIsGone) {
     echinus_collider collider;
     echinus_collider_init(&collider, sizeof collider, view.get());
     CSimulation simulation;
-    expect_ok(echinus_simulation_create(cloth.get(), &collider, 1, nullptr, out(simulation)));
+    echinus_simulation_options options;
+    echinus_simulation_options_init(&options, sizeof options);
+    options.solver = ECHINUS_SOLVER_JAKOBSEN;
+    expect_ok(echinus_simulation_create(cloth.get(), &collider, 1, &options, out(simulation)));
     view.reset();
     EXPECT_EQ(released.count, 0);
     expect_ok(echinus_simulation_step(simulation.get()));

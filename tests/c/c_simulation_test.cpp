@@ -168,7 +168,10 @@ TEST(CSimulations, TakeARowOfColliders) {
     colliders[1].pose.translation[0] = 5;
     const CDeformable cloth = c_small_sheet();
     CSimulation simulation;
-    expect_ok(echinus_simulation_create(cloth.get(), colliders, 2, nullptr, out(simulation)));
+    echinus_simulation_options options;
+    echinus_simulation_options_init(&options, sizeof options);
+    options.solver = ECHINUS_SOLVER_JAKOBSEN;
+    expect_ok(echinus_simulation_create(cloth.get(), colliders, 2, &options, out(simulation)));
     EXPECT_EQ(echinus_simulation_collider_count(simulation.get()), 2U);
     echinus_collider read{};
     read.size = sizeof read;

@@ -53,7 +53,7 @@ TEST(SceneMeshCloth, MayBeAGeneratedShapeThatNobodyReads) {
     const Deformable bag = make_cloth(scene_with_cloth(
         R"("mesh": {"sphere": {"radius": 0.5, "segments": [12, 8]}}, "position": [0, 0, 2])"));
     EXPECT_EQ(bag.faces, make_sphere(0.5, 12, 8).faces);
-    EXPECT_FALSE(bag.folds.empty());
+    EXPECT_FALSE(bag.sticks.empty());
 }
 
 TEST(SceneMeshCloth, ChoosesItsVerticesByABoxInTheMeshsOwnCoordinates) {

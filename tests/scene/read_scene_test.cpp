@@ -173,7 +173,7 @@ TEST(Scene, KeepsHalfTheSpacingAwayUnlessItHasAThickness) {
         return make_simulation(scene, map).options().thickness.value();
     };
     EXPECT_NEAR(thickness(""), 0.1, 1e-6);
-    EXPECT_EQ(thickness(R"(, "thickness": 0)"), 0);
+    EXPECT_EQ(thickness(R"(, "thickness": 0.5)"), 0.5);
     EXPECT_EQ(thickness(R"(, "thickness": 0.02)"), 0.02);
 }
 
