@@ -28,6 +28,8 @@ struct RestingCloth {
 RestingCloth drape(const Setting& setting) {
     Scene scene = read_scene(setting.scenes / (setting.is_short ? "horse_small.json" : "horse.json"));
     scene.simulation.surface_collision = scene.simulation.self_collision = false;
+    scene.simulation.solver = SolverKind::Jakobsen;
+    scene.simulation.time_step = 1.0 / 240;
     TriangleMesh model = repair(read_mesh(setting.debian_horse), scene.colliders.front().repair).mesh;
     Simulation simulation = make_simulation(scene, ExactMap::build(model));
     while (!simulation.at_rest() && simulation.frame() < scene.frame_limit) simulation.step();

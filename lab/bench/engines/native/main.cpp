@@ -112,7 +112,8 @@ class EchinusEngine : public Engine {
     }
     std::map<std::string, std::string> settings() const override {
         const SimulationOptions& options = simulation_.options();
-        return {{"solver", "Verlet"},
+        const bool surfaces = options.surface_collision;
+        return {{"solver", surfaces ? "newton" : "jakobsen"},
                 {"time step", fmt::format("1/{:.0f} s", 1 / options.time_step)},
                 {"iterations", fmt::format("{}", options.iteration_count)},
                 {"thickness", fmt::format("{:.4g} R", options.thickness.value())},
@@ -131,6 +132,10 @@ class EchinusEngine : public Engine {
         options.gravity = {0, -kGravity, 0};
         options.friction = kFriction;
         options.surface_collision = options.self_collision = surfaces;
+        if (!surfaces) {
+            options.solver = SolverKind::Jakobsen;
+            options.time_step = 1.0 / 240;
+        }
         if (task.is_matched) {
             options.time_step = kFrameSeconds;
             options.iteration_count = kMatchedIterations;

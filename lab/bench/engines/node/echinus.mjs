@@ -4,7 +4,7 @@ import { FRAME_SECONDS, FRICTION, GRAVITY, THICKNESS, cloth, engine, isMatched, 
 const { load } = await engine('echinus');
 const echinus = await load();
 
-const substeps = isMatched ? 1 : 4; // four: the time step of a scene unless it says otherwise
+const substeps = isMatched || !particlesOnly ? 1 : 4; // the time steps of a scene unless it says otherwise
 const map = echinus.buildMap(echinus.makeMesh(model.vertices, model.faces));
 const scene = echinus.parseScene({
     model: 'model.obj',
@@ -12,16 +12,14 @@ const scene = echinus.parseScene({
     material: { friction: FRICTION },
     gravity: GRAVITY,
     time_step: FRAME_SECONDS / substeps,
-    iterations: 10,
-    surface_collision: !particlesOnly,
-    self_collision: !particlesOnly,
+    ...(particlesOnly && { solver: 'jakobsen' }),
 });
 const simulation = scene.makeSimulation(map, { cloth: echinus.makeMesh(cloth.vertices, cloth.faces) });
 
 record(
     {
         engine: 'Echinus', version: versionOf('echinus'), configuration: particlesOnly ? 'particles only' : '', substeps,
-        settings: { iterations: '10', thickness: isMatched ? String(THICKNESS) : 'half an edge' },
+        settings: { solver: particlesOnly ? 'jakobsen' : 'newton', thickness: isMatched ? String(THICKNESS) : 'half an edge' },
     },
     () => simulation.step(substeps),
     () => simulation.positions,
