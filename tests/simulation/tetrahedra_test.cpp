@@ -140,9 +140,9 @@ TEST(Tetrahedra, KeepTheMomentumOfABodyWhoseElementsAreThrownInsideOut) {
                 simulation.step();
                 least = std::min(least, test::least_volume_ratio(body, simulation.positions()));
                 const BodyMomentum now = momentum_of_body(simulation);
-                ASSERT_LT(length(now.linear - start.linear), 1e-4 * start.of_all) << "frame " << frame;
+                ASSERT_LT(length(now.linear - start.linear), 1e-3 * start.of_all) << "frame " << frame;
                 // An implicit step loses some of it.
-                ASSERT_LT(length(now.angular), 1.002 * length(start.angular)) << "frame " << frame;
+                ASSERT_LT(length(now.angular), 1.01 * length(start.angular)) << "frame " << frame;
             }
             EXPECT_LT(least, -0.1);
         }

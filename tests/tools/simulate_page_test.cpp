@@ -116,7 +116,8 @@ using nlohmann::json;
 namespace {
 
 const std::string kFallingSheet = R"({"model": {"box": {"size": [1, 1, 1]}},
-    "cloth": {"particles": [5, 4], "size": [1, 1], "position": [0, 0, 0.52]}, "frame_limit": 50})";
+    "cloth": {"particles": [5, 4], "size": [1, 1], "position": [0, 0, 0.52]}, "frame_limit": 50,
+    "time_step": 0.004166666666666667})";
 
 /// Pages that `simulate --html` writes, of a player that is no more than its place.
 class SimulatePage : public CommandLineTest {
@@ -223,7 +224,7 @@ TEST_F(SimulatePage, RecordsSixtyFramesPerSecondAndTheLast) {
 TEST_F(SimulatePage, CountsTheParticlesInsideInEachFrame) {
     write("inside.json", R"({"model": {"box": {"size": [1, 1, 1]}}, "frame_limit": 40,
         "cloth": {"particles": [2, 2], "size": [0.5, 0.5], "position": [0, 0, 0.3]},
-        "surface_collision": false})");
+        "solver": "jakobsen"})");
     const PlayerPage page = play("inside.json");
     EXPECT_EQ(page.description["frames"].front()["inside"], 4);
     EXPECT_EQ(page.description["frames"].back()["inside"], 0);
@@ -232,7 +233,7 @@ TEST_F(SimulatePage, CountsTheParticlesInsideInEachFrame) {
 TEST_F(SimulatePage, HasThePairsOfFacesThatIntersectInEachFrameWhereAllAreJudged) {
     write("cut.json", R"({"model": {"box": {"size": [1, 1, 1]}}, "frame_limit": 42,
         "cloth": {"particles": [2, 2], "size": [4, 4], "position": [0, 0, 0.6]},
-        "surface_collision": false})");
+        "solver": "jakobsen"})");
     const PlayerPage page = play("cut.json", {"--judge", "all"});
     EXPECT_EQ(page.description["frames"].front()["intersecting_pairs"], 0);
     EXPECT_EQ(page.description["frames"].back()["number"], 42);
@@ -243,7 +244,8 @@ TEST_F(SimulatePage, HasThePairsOfFacesThatIntersectInEachFrameWhereAllAreJudged
 
 TEST_F(SimulatePage, HasAPoseForEachFrameOfAModelThatMoves) {
     write("turning.json", R"({"model": {"box": {}}, "collider": {"angular_velocity": [0, 0, 90]},
-        "cloth": {"particles": [2, 2], "size": [1, 1], "position": [0, 0, 2]}, "frame_limit": 24})");
+        "cloth": {"particles": [2, 2], "size": [1, 1], "position": [0, 0, 2]}, "frame_limit": 24,
+        "time_step": 0.004166666666666667})");
     const PlayerPage page = play("turning.json");
     for (const json& frame : page.description["frames"]) {
         const double half_angle = std::acos(-1) / 4 * frame["number"].get<double>() / 240;
