@@ -158,8 +158,8 @@ Embedding embed(const TetrahedralMesh& mesh, StridedSpan<const Vec3f> points, un
 void carry(const Embedding& embedding, StridedSpan<const Vec3f> positions, StridedSpan<Vec3f> points,
            unsigned thread_count = 1) noexcept;
 
-/// Elastic material between four particles: stable Neo-Hookean (Macklin and Mueller 2021), under Xpbd. Made
-/// by make_soft_body() (soft_body.hpp). Units are those in which masses, lengths and seconds are given: with
+/// Elastic material between four particles: stable Neo-Hookean (Macklin and Mueller 2021). Made by
+/// make_soft_body() (soft_body.hpp). Units are those in which masses, lengths and seconds are given: with
 /// kilograms and metres, mu and lambda are in pascals.
 struct ElasticTetrahedron {
     std::array<std::uint32_t, 4> particles; ///< (a, b, c, d)

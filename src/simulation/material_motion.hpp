@@ -6,7 +6,7 @@
 
 namespace echinus {
 
-/// The displacement of a moving collider's material since the previous substep, at any point that it occupies
+/// The displacement of a moving collider's material since the previous frame, at any point that it occupies
 /// now: p - previous_pose(pose^-1(p)), an affine function of p. Not velocity times time, whose error for a
 /// rotation would push particles outwards a little in every frame.
 struct MaterialMotion {
