@@ -39,7 +39,7 @@ def test_a_soft_body_weighs_what_its_density_and_volume_say():
     free = soft_box(density=500, scale=2)
     assert (1 / free.inverse_masses.astype(float)).sum() == pytest.approx(500 * 0.8**3)
     assert np.allclose(free.positions, BOX.vertices * 2 + [0, 0, 0.25])
-    assert ech.inspect(free.mesh).closed and free.stick_count == free.fold_count == 0
+    assert ech.inspect(free.mesh).closed and free.stick_count == 0
     for array in (free.positions, free.inverse_masses, free.faces, free.tetrahedra):
         assert not array.flags.writeable
 
@@ -54,9 +54,9 @@ def test_parts_follow_one_another_in_one_deformable():
 
 
 def test_a_cloth_is_made_of_a_mesh_as_of_a_scene():
-    scene = {"model": {"torus": {}}, "cloth": {"mesh": "s.obj", "position": [0, 0, 2], "scale": 2, "bending": "sticks"}}
+    scene = {"model": {"torus": {}}, "cloth": {"mesh": "s.obj", "position": [0, 0, 2], "scale": 2}}
     expected = ech.Simulation.from_scene(scene, cloth=BALL)
-    made = ech.make_cloth_of_mesh(BALL, position=(0, 0, 2), scale=2, bending="sticks")
+    made = ech.make_cloth_of_mesh(BALL, position=(0, 0, 2), scale=2)
     simulation = ech.Simulation(made, [ech.Collider(ech.ExactMap(ech.make_torus()))])
     assert np.array_equal(simulation.positions, expected.positions)
     simulation.step(5)
@@ -73,19 +73,19 @@ def test_the_defaults_are_those_of_a_scene():
     sheet = cloth(width=3, height=3, position=(0, 0, 1))
     made = ech.Simulation(sheet, [ech.Collider(ech.ExactMap(ech.make_torus()))])
     assert made.options == by_scene.options and made.frame_limit == by_scene.frame_limit
-    made.step(100)
-    by_scene.step(100)
+    made.step(25)
+    by_scene.step(25)
     assert made.state_hash == by_scene.state_hash
     soft = ech.Simulation(soft_box(), [BELOW]).options
-    assert (soft.solver, soft.iteration_count, soft.substep_count) == ("xpbd", 1, 10)
+    assert (soft.solver, soft.time_step) == ("newton", 1 / 60)
     sampled = ech.Simulation(cloth(), [ech.Collider(ech.DistanceMap(torus()), position=(0, 0, 9))]).options
     assert not (sampled.surface_collision or sampled.self_collision)
 
 
 def test_a_body_bears_on_its_floor_and_is_lifted_by_what_deforms():
-    simulation = ech.Simulation(soft_box(position=(0, 0, 0.22)), [BELOW], measure_loads=True)
+    simulation = ech.Simulation(soft_box(position=(0, 0, 0.22)), [BELOW])
     assert simulation.load_on(0) == ech.Load((0, 0, 0), (0, 0, 0))
-    simulation.step(60)
+    simulation.step(15)
     assert simulation.load_on(0).force[2] < 0
     height = simulation.positions[:, 2].mean()
     for rise in (0.01, 0.02, 0.03):
@@ -113,7 +113,7 @@ def test_a_collider_goes_where_it_is_led():
     assert simulation.colliders[0].rotation == pytest.approx(turned)
     keys = [ech.PoseKey(0, (0.1, 0, -0.5)), ech.PoseKey(1, (0.1, 0, 0.5), ech.rotation_about((0, 0, 1), 1))]
     simulation.set_collider_keyframes(0, keys)
-    simulation.step(119)
+    simulation.step(29)
     half = ech.pose_at(keys, 0.5)
     assert half.position == pytest.approx((0.1, 0, 0)) and half.rotation == pytest.approx(turned)
     assert simulation.colliders[0].position == pytest.approx(half.position)
@@ -155,7 +155,7 @@ def test_one_part_passes_through_a_collider_that_holds_the_other():
     sheets = [ech.make_cloth(column_count=6, row_count=6, width=0.5, height=0.5, position=(x, 0, 0.2)) for x in (-1, 1)]
     both = ech.combine([ech.passing_through(0, sheets[0]), sheets[1]])
     run = ech.Simulation(both, [table], surface_collision=True, self_collision=True, thickness=0.01)
-    run.step(120)
+    run.step(30)
     assert run.positions[:36, 2].max() < -0.1 and run.positions[36:, 2].min() > 0.1
     for collider, error in ((-1, ValueError), ("0", TypeError)):
         with pytest.raises(error, match="collider"):
@@ -168,12 +168,12 @@ def test_deformables_and_caches_are_pickled_whole():
     threaded = ech.make_cloth_of_mesh(BALL, position=(0, 0, 1))
     for deformable in (both, threaded, ech.passing_through(0, threaded)):
         again = pickle.loads(pickle.dumps(deformable))
-        assert repr(again) == repr(deformable) and again.fold_count == deformable.fold_count
-        runs = [ech.Simulation(d, [BELOW], solver="xpbd") for d in (deformable, again)]
+        assert repr(again) == repr(deformable) and again.stick_count == deformable.stick_count
+        runs = [ech.Simulation(d, [BELOW]) for d in (deformable, again)]
         for run in runs:
-            run.step(20)
+            run.step(5)
         assert runs[0].state_hash == runs[1].state_hash
-        assert runs[1].restored(runs[0].save_state()).frame == 20
+        assert runs[1].restored(runs[0].save_state()).frame == 5
     cache = ech.VertexCache([BALL.vertices, BALL.vertices * 2], 0.5, start_time=1)
     again = pickle.loads(pickle.dumps(cache))
     assert np.array_equal(again.samples, cache.samples) and repr(again) == repr(cache)
@@ -184,11 +184,11 @@ def test_deformables_and_caches_are_pickled_whole():
     [
         {"time_step": 0},
         {"time_step": np.nan},
-        {"solver": "verlet"},
+        {"solver": "jakobsen"},
         {"drag": 2},
         {"gravity": (0, 0, np.nan)},
         {"iteration_count": 0},
-        {"compliance": (-1, 0, 0)},
+        {"stretch_stiffness": 0},
         {"surface_collision": False, "self_collision": True},
         {"keep_free": False, "surface_collision": True},
     ],
@@ -229,8 +229,6 @@ def test_what_steers_no_collider_is_refused_and_changes_nothing():
         ):
             with pytest.raises(IndexError, match=f"there is no collider {index}; there are 1"):
                 call()
-    with pytest.raises(ValueError, match="measure_loads"):
-        simulation.load_on(0)
     few, bad = FLOOR_MESH.vertices[1:], FLOOR_MESH.vertices.copy()
     bad[3] = np.nan
     for call in (
@@ -274,14 +272,14 @@ def test_a_saved_state_goes_on_with_the_same_bits():
         return ech.Simulation(soft_box(position=(0, 0, 0.3)), [BELOW])
 
     first = made()
-    first.step(30)
+    first.step(8)
     state, positions = first.save_state(), first.positions
-    first.step(20)
+    first.step(5)
     before = positions.copy()
     for simulation in (first, made()):
         again = simulation.restored(state)
-        assert again.frame == 30
-        again.step(20)
+        assert again.frame == 8
+        again.step(5)
         assert again.state_hash == first.state_hash
     assert np.array_equal(positions, before) and np.shares_memory(positions, first.positions)
 
@@ -328,11 +326,11 @@ def folder(tmp_path):
 
 def test_scenes_may_have_several_colliders_bodies_and_caches(folder):
     (folder / "scene.json").write_text(json.dumps(SCENE))
-    run_program("simulate", folder / "scene.json", "--frames", "20", "--obj", "-o", folder / "run")
-    simulation = ech.Simulation.from_scene(folder / "scene.json", measure_loads=True)
-    assert len(simulation.colliders) == 2 and len(simulation.tetrahedra) > 100 and simulation.options.measure_loads
-    simulation.step(20)
-    theirs = (folder / "run" / "frames" / "cloth_000020.obj").read_text().splitlines()
+    run_program("simulate", folder / "scene.json", "--frames", "10", "--obj", "-o", folder / "run")
+    simulation = ech.Simulation.from_scene(folder / "scene.json")
+    assert len(simulation.colliders) == 2 and len(simulation.tetrahedra) > 100
+    simulation.step(10)
+    theirs = (folder / "run" / "frames" / "cloth_000010.obj").read_text().splitlines()
     vertices = np.array([line.split()[1:4] for line in theirs if line.startswith("v ")], np.float32)
     assert np.array_equal(simulation.positions[np.unique(simulation.faces)], vertices)
 
