@@ -56,7 +56,8 @@ struct CollisionFilter {
 /// Particles and what holds them together, all in world units and axes.
 struct Deformable {
     std::vector<Vec3f> positions; ///< [particle_count]
-    /// [particle_count] one frame ago: positions - previous_positions = velocity * time_step.
+    /// [particle_count] where a particle at its present velocity was one frame ago: positions -
+    /// previous_positions = velocity * time_step. Under Jakobsen that is where it was.
     std::vector<Vec3f> previous_positions;
     /// [particle_count] 1 / mass; 0 for a pinned particle: it stays in place, or where it is attached, and no
     /// collider pushes it. Jakobsen: in any unit, since only ratios count. Newton takes the masses of soft

@@ -161,14 +161,14 @@ describe('A simulation', () => {
         const scene = echinus.parseScene({ ...falling, cloth: { ...falling.cloth, position: [0, 0, 0.42] } });
         const simulation = scene.makeSimulation(scene.buildMap(scene.makeModel()));
         assert.equal(scene.particleCount, simulation.particleCount);
-        simulation.step(40);
-        assert.deepEqual([simulation.frame, simulation.atRest], [40, false]);
+        simulation.step(10);
+        assert.deepEqual([simulation.frame, simulation.atRest], [10, false]);
         const inside = simulation.containsBatch(echinus.makeFlags(simulation.particleCount)).view;
         assert.equal(inside.includes(1), false);
         const contacts = simulation.contactsBatch(0.1, echinus.makeContacts(simulation.particleCount));
         assert.ok(Array.from({ length: simulation.particleCount }, (_, i) => contacts.at(i)).some(({ found }) => found));
-        const { contactCount, lostCount, measuredPairCount, searchedFaceCount, squeezedCount } = simulation.profile;
-        assert.ok(contactCount > 0 && measuredPairCount > 0 && searchedFaceCount > 0);
+        const { contactCount, lostCount, measuredPairCount, squeezedCount } = simulation.profile;
+        assert.ok(contactCount > 0 && measuredPairCount > 0);
         assert.deepEqual([lostCount, squeezedCount], [0, 0]);
         const { rootMeanSquare, largest } = simulation.residual;
         assert.ok(rootMeanSquare > 0 && largest > rootMeanSquare);
@@ -218,15 +218,16 @@ describe('A simulation', () => {
         simulation.step();
         assert.equal(simulation.positions, positions, 'the same view');
         assert.notDeepEqual(positions, before);
-        assert.deepEqual(simulation.previousPositions, before);
+        const fallen = 9.81 * 2 * scene.timeStep ** 2; // in a frame, at the velocity after two of them
+        assert.ok(Math.abs(simulation.previousPositions[2] - positions[2] - fallen) < 0.02 * fallen);
     });
     test('has a collider that turns at the velocity it is given', () => {
         const scene = echinus.parseScene(readScene('torus_small.json'));
         const simulation = scene.makeSimulation(scene.buildMap(scene.makeModel()));
         simulation.setColliderVelocity([0, 0, 1], [0, 0, Math.PI]);
-        simulation.step(60);
+        simulation.step(15);
         const { position, rotation } = simulation.collider;
-        assert.ok(Math.abs(position[2] - 60 * scene.timeStep) < 1e-9);
+        assert.ok(Math.abs(position[2] - 15 * scene.timeStep) < 1e-9);
         assert.ok(Math.abs(rotation[0] - Math.cos(Math.PI / 8)) < 1e-9);
     });
     test('continues with other options from its present state', () => {
@@ -237,8 +238,8 @@ describe('A simulation', () => {
         const light = echinus.parseScene({ ...description, gravity: [0, 0, 0] });
         const second = first.continueWith(light);
         assert.deepEqual(second.positions.slice(), first.positions.slice());
-        first.step(20);
-        second.step(20);
+        first.step(5);
+        second.step(5);
         assert.ok(second.positions[2] > first.positions[2]);
     });
     test('has several colliders, each with a map and a velocity of its own', () => {
@@ -249,7 +250,7 @@ describe('A simulation', () => {
         const simulation = scene.makeSimulation(maps);
         assert.equal(simulation.colliderCount, 2);
         simulation.setColliderVelocity([-1, 0, 0], [0, 0, 0], 1);
-        simulation.step(24);
+        simulation.step(6);
         assert.ok(Math.abs(simulation.colliderAt(1).position[0] - 2.9) < 1e-9);
         assert.deepEqual(simulation.collider.position, [0, 0, 0]);
         assert.throws(() => simulation.setColliderVelocity([0, 0, 0], [0, 0, 0], 2), /there is no collider 2; there are 2/);
@@ -261,7 +262,7 @@ describe('A simulation', () => {
         const alone = echinus.parseScene(description);
         const simulation = alone.makeSimulation(maps[0]);
         simulation.setColliderVelocity([0, 0, -1], [0, 0, 0]);
-        simulation.step(24);
+        simulation.step(6);
         const { model, ...rest } = description;
         const both = echinus.parseScene({ ...rest, colliders: [{ model }, { model: { sphere: {} }, position: [0, 0, 3] }] });
         const joined = simulation.continueWith(both, maps);
@@ -280,7 +281,7 @@ describe('A simulation', () => {
         const simulation = scene.makeSimulation(map, { bodies: [echinus.makeSphere(0.4, 20, 10)] });
         assert.ok(simulation.faces.length > 100);
         const before = simulation.positions[2];
-        simulation.step(30);
+        simulation.step(8);
         assert.ok(simulation.positions[2] < before);
         assert.throws(() => scene.makeSimulation(map), /bodies\[0\]: its mesh is the file ball\.obj/);
         assert.throws(() => scene.makeSimulation(map, { bodies: [null, null] }), /more meshes of bodies than bodies/);

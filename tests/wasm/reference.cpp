@@ -128,7 +128,7 @@ const char* const kSimulations[] = {
     R"({"map": {"kind": "distance"}, "solver": "jakobsen"})",
     R"({"map": {"kind": "distance", "grid": "octahedral"}, "solver": "jakobsen", "iterations": 5})",
     R"({"solver": "jakobsen", "collider": {"angular_velocity": [0, 90, 30], "scale": [1, 1.2, 0.9]}})",
-    R"({"collider": {"position": [0.1, 0, -0.2], "rotation": {"axis": [1, 1, 0], "degrees": 30}, "linear_velocity": [0, 0, 1]},
+    R"({"collider": {"position": [0.1, 0, -0.6], "rotation": {"axis": [1, 1, 0], "degrees": 30}, "linear_velocity": [0, 0, 1]},
         "material": {"friction": 0.1, "air_drag": 2}})",
     R"({"collider": {"angular_velocity": [0, 0, 90]}, "cloth": {"size": null, "particles": null, "pins": null,
         "mesh": {"sphere": {"radius": 0.9, "segments": [40, 20]}}, "position": [0, 0, 1.2], "attachments": [3]}})",
@@ -140,7 +140,7 @@ const char* const kScene = R"({
     "model": {"torus": {"segments": [40, 16]}},
     "cloth": {"particles": [31, 30], "size": [3, 3], "position": [0, 0, 0.45], "thickness": 0.014, "pins": [[0, 0]]}
 })";
-constexpr std::uint32_t kFrameCount = 30;
+constexpr std::uint32_t kFrameCount = 20;
 
 std::string hexadecimal(std::uint64_t number) {
     char digits[17];

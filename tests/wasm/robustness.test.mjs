@@ -52,7 +52,7 @@ describe('An object that was deleted', () => {
         const simulation = scene.makeSimulation(map);
         map.delete();
         scene.delete();
-        simulation.step(30);
+        simulation.step(10);
         assert.equal(simulation.containsBatch(echinus.makeFlags(400)).view.includes(1), false);
     });
 });
@@ -73,7 +73,7 @@ describe('When memory grows', () => {
     test('contacts and positions do, too', () => {
         const scene = echinus.parseScene({ model: { torus: {} }, cloth: { size: [3, 3], particles: [20, 20], position: [0, 0, 0.5] } });
         const simulation = scene.makeSimulation(scene.buildMap(scene.makeModel()));
-        simulation.step(30);
+        simulation.step(10);
         const contacts = simulation.contactsBatch(0.1, echinus.makeContacts(400));
         const was = { positions: simulation.positions.slice(), floats: contacts.floats.slice(), ints: contacts.ints.slice(), bytes: contacts.bytes.slice() };
         echinus.makePoints(5_000_000);

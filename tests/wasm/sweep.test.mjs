@@ -15,7 +15,7 @@ before(async () => { echinus = await start(); });
 const sheet = { size: [1, 1], particles: [4, 4], position: [0, 0, 9] };
 const scenes = {
     exact_map: { map: {} }, distance_map: { map: { kind: 'distance' } }, mesh_cloth: { cloth: { mesh: { sphere: {} } } },
-    body: { cloth: undefined, bodies: [{ mesh: { box: {} }, element: 1 }] }, xpbd: { solver: 'xpbd' },
+    body: { cloth: undefined, bodies: [{ mesh: { box: {} }, element: 1 }] }, jakobsen: { solver: 'jakobsen' },
 };
 function sceneFor(section, only, path, value) {
     const scene = structuredClone({ model: { torus: {} }, cloth: sheet, ...scenes[section] });
@@ -55,7 +55,7 @@ describe('An option', () => {
                 assert.equal(error.code, 'InvalidScene', error.message);
                 assert.ok(error.message.startsWith(`s.json: ${name} is `), `${JSON.stringify(value)}: ${error.message}`);
             }
-            const usual = { '1/240': 1 / 240, required: [1, 1] }[row.default] ?? row.default ?? 1;
+            const usual = { '1/60': 1 / 60, required: [1, 1] }[row.default] ?? row.default ?? 1;
             echinus.parseScene(sceneFor(section, only, path, row.type === 'kinds' ? usual[0] : usual)).delete();
         });
 });

@@ -347,7 +347,7 @@ class Simulation:
 
     @property
     def previous_positions(self) -> NDArray[np.float32]:
-        """(particle_count, 3) The same, one frame before."""
+        """(particle_count, 3) Where particles at their present velocities were one frame before."""
         return self._simulation.previous_positions
 
     @property

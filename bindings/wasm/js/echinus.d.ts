@@ -777,7 +777,7 @@ export class Simulation extends Deletable {
     readonly particleCount: number;
     /** [3 particleCount] a view of the simulation's own memory: get it anew each time, as with a buffer. Read only. */
     readonly positions: Float32Array;
-    /** [3 particleCount] one frame ago. */
+    /** [3 particleCount] where particles at their present velocities were one frame ago. */
     readonly previousPositions: Float32Array;
     /** [3 face_count] particles; a copy, constant over time. */
     readonly faces: Uint32Array;

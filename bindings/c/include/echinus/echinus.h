@@ -948,7 +948,7 @@ typedef struct echinus_deformable_arrays {
     size_t size;
     size_t particle_count;
     const float* positions;          ///< [3 particle_count]
-    const float* previous_positions; ///< [3 particle_count] one frame ago; NULL: at rest
+    const float* previous_positions; ///< [3 particle_count] one frame ago at these velocities; NULL: at rest
     const float* inverse_masses;     ///< [particle_count] 0 for a pinned particle; NULL: 1 for all
     const echinus_stick* sticks; ///< in the order in which they are relaxed; of Newton's cloth only threads
     size_t stick_count;
