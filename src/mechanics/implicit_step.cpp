@@ -9,6 +9,8 @@ namespace {
 
 /// Armijo's condition: the share of the slope's promise that a step has to keep.
 constexpr double kSufficientDecrease = 1e-4;
+/// A guess is halved at most so often: then nothing is left of its way.
+constexpr std::uint32_t kMostHalvingsOfGuess = 24;
 /// After so many shorter trials the step is taken as it is.
 constexpr std::uint32_t kMostHalvings = 12;
 /// Differences of the energy below this share of it are rounding.
@@ -91,6 +93,25 @@ void ImplicitStep::hold(const Workers& workers) {
                                gradient_[row] = {};
                            }
                        });
+}
+
+void ImplicitStep::calm(Places start, std::span<Vec3d> guess, const Workers& workers) {
+    // What moves as a whole goes on.
+    Vec3d common;
+    double mass = 0;
+    for (std::size_t i = 0; i < guess.size(); ++i) {
+        common += (guess[i] - start[i]) * masses_[i];
+        mass += masses_[i];
+    }
+    const bool is_free = std::find(is_held_.begin(), is_held_.end(), 1) == is_held_.end();
+    common *= is_free ? 1 / mass : 0;
+    for (std::size_t i = 0; i < guess.size(); ++i) trial_[i] = start[i] + common;
+    const double most = energy(trial_, nullptr, workers);
+    for (std::uint32_t halving = 0; halving < kMostHalvingsOfGuess; ++halving) {
+        if (energy(guess, nullptr, workers) <= most) return;
+        for (std::size_t i = 0; i < guess.size(); ++i) guess[i] = (trial_[i] + guess[i]) * 0.5;
+    }
+    std::copy(trial_.begin(), trial_.end(), guess.begin());
 }
 
 StepReport ImplicitStep::solve(std::span<Vec3d> places, const ContactEnergy* contacts,

@@ -65,6 +65,10 @@ class ImplicitStep {
     /// @param drag     the rate at which a velocity decays, 1/s
     void begin(const Motion& motion, std::span<const Vec3d> accelerations,
                std::span<const std::uint8_t> is_held, double step, double drag = 0);
+    /// Brings a guess nearer to what only moves as a whole until the energy without contacts is no greater
+    /// than there, so that a step which only descends ends no higher, however far inertia leads.
+    /// @param start  [particle] where the step begins; held particles as in the guess
+    void calm(Places start, std::span<Vec3d> guess, const Workers& workers);
     /// Minimises from a guess. @param places  in: the guess; held particles are where they are to be. Out:
     /// the minimum as far as the budget leads
     StepReport solve(std::span<Vec3d> places, const ContactEnergy* contacts, const StepBudget& budget,

@@ -174,7 +174,8 @@ void NeoHookean::add_derivatives(Places places, std::span<Vec3d> gradient, Block
             for (std::size_t i = 0; i < 4; ++i) moved[i] = times(mode, by_corner[i]);
             return moved;
         };
-        for (const Mode& mode : modes_of(decompose(f), mu, lambda)) add(moved_by(mode.matrix), mode.value);
+        for (const Mode& mode : modes_of(decompose(f), mu, lambda))
+            add(moved_by(mode.matrix), std::abs(mode.value));
         if (!(viscosity > 0)) return;
         // Of the change of strain, six components: the symmetric matrices with one or two entries.
         const Matrix3& b = before_[t];

@@ -110,7 +110,8 @@ std::uint32_t NewtonSolver::part_count() {
                            CarryField::longest_displacement(colliders[c], after) + deformations_[c].longest);
     }
     const PointArrays now = places_now();
-    const double overlap = contacts_->overlap_ahead(colliders, now, guess(now, options.time_step), workers_);
+    const double overlap =
+        contacts_->overlap_ahead(colliders, now, guess(motion_.places, options.time_step), workers_);
     const double parts = std::ceil(std::max(longest / (threshold::kMostCarried * thickness_),
                                             overlap / (threshold::kMostOverlap * mean_edge_)));
     return static_cast<std::uint32_t>(std::clamp(parts, 1.0, double{threshold::kMostPartsOfFrame}));
@@ -123,8 +124,10 @@ void NewtonSolver::step_part(std::uint32_t parts, const FramePart& part) {
     for (Collider& collider : colliders) collider.pose = pose_after(collider, seconds);
     const PointArrays start = carried_start(before, part);
     if (contacts_) contacts_->particles().begin_step(before, colliders, motion_.places, is_held_);
-    std::vector<Vec3d> places = guess(start, seconds);
+    const std::vector<Vec3d> from = exact(start);
+    std::vector<Vec3d> places = guess(from, seconds);
     step_.begin(motion_, accelerations_, is_held_, seconds, options.air_drag);
+    step_.calm(from, places, workers_);
     // In a part of a frame inertia has more of a say, and fewer steps lead as far.
     const std::uint32_t newton_steps =
         parts > 1 ? (options.newton_step_count + 1) / 2 : options.newton_step_count;
@@ -161,20 +164,24 @@ PointArrays NewtonSolver::carried_start(const std::vector<Collider>& before, con
     return start;
 }
 
+/// Where nothing carries a particle, all its digits are kept.
+std::vector<Vec3d> NewtonSolver::exact(const PointArrays& start) const {
+    std::vector<Vec3d> places = motion_.places;
+    for (std::size_t i = 0; i < places.size(); ++i)
+        if (start[i] != Vec3f(places[i])) places[i] = Vec3d(start[i]);
+    return places;
+}
+
 /// Inertia and as much of gravity as the last step has left. @param start  from where what is carried goes on
-std::vector<Vec3d> NewtonSolver::guess(const PointArrays& start, double seconds) const {
-    std::vector<Vec3d> places(motion_.particle_count());
+std::vector<Vec3d> NewtonSolver::guess(std::span<const Vec3d> start, double seconds) const {
+    std::vector<Vec3d> places(start.begin(), start.end());
     for (std::size_t i = 0; i < places.size(); ++i) {
-        const Vec3d place = motion_.places[i];
-        // Where nothing carries a particle, all its digits are kept.
-        const Vec3d from = start[i] == Vec3f(place) ? place : Vec3d(start[i]);
-        places[i] = from;
         if (is_held_[i] != 0) continue;
         const Vec3d pull = accelerations_[i];
         const double pull_sq = dot(pull, pull);
         const double share = pull_sq > 0 ? std::clamp(dot(gained_[i], pull) / pull_sq, 0.0, 1.0) : 0;
         // A carried particle has the motion of its collider already.
-        const Vec3d carried = from - place, own = motion_.velocities[i] * seconds;
+        const Vec3d carried = start[i] - motion_.places[i], own = motion_.velocities[i] * seconds;
         places[i] += own - carried + pull * (share * seconds * seconds);
     }
     return places;

@@ -29,7 +29,8 @@ class NewtonSolver : public Solver {
     PointArrays places_now() const;
     double fastest() const;
     PointArrays carried_start(const std::vector<Collider>& before, const FramePart& part);
-    std::vector<Vec3d> guess(const PointArrays& start, double seconds) const;
+    std::vector<Vec3d> exact(const PointArrays& start) const;
+    std::vector<Vec3d> guess(std::span<const Vec3d> start, double seconds) const;
     void minimise(std::vector<Vec3d>& places, const PointArrays& start, double seconds,
                   std::uint32_t newton_steps);
     void publish();

@@ -361,7 +361,7 @@ TEST(SelfCollision, KeepsTheMomentumOfASheetThatUnfoldsInTheAir) {
         EXPECT_EQ(simulation.profile().squeezed_count, 0u);
         const Vec3d before = mean_of(simulation.positions());
         for (int i = 0; i < 6; ++i) simulation.step();
-        EXPECT_LT(length(mean_of(simulation.positions()) - before) * 10, 0.05); // metres per second
+        EXPECT_LT(length(mean_of(simulation.positions()) - before) * 10, 0.1); // metres per second
         EXPECT_TRUE(meeting_faces(simulation, {}).empty());
     }
 }
