@@ -22,6 +22,12 @@ float least_height_of(const Element& element, std::span<const Vec3f> positions) 
     return longest > 0 ? length(cross(b - a, c - a)) / longest : 0;
 }
 
+/// At rest: a barycentric coordinate falls from 1 to 0 along a height.
+float least_height_of(const ElasticTetrahedron& tetrahedron) {
+    const auto& [b, c, d] = tetrahedron.gradients;
+    return 1 / std::max({length(b), length(c), length(d), length(b + c + d)});
+}
+
 /// [collider] 1 for those of which only particles keep out.
 std::vector<std::uint8_t> without_faces(const std::vector<Collider>& colliders,
                                         const SimulationOptions& options) {
@@ -68,6 +74,9 @@ SurfaceContacts::SurfaceContacts(const Deformable& deformable, const std::vector
         for (const std::uint32_t v : element.vertices)
             most_[v] =
                 std::min(most_[v], threshold::kMostOfHeight * least_height_of(element, deformable.positions));
+    for (const ElasticTetrahedron& tetrahedron : deformable.tetrahedra)
+        for (const std::uint32_t v : tetrahedron.particles)
+            most_[v] = std::min(most_[v], threshold::kMostOfHeight * least_height_of(tetrahedron));
     if (options.self_collision) {
         ContactSide& side = sides_.emplace_back(own_, places);
         side.number = static_cast<std::uint32_t>(collider_count_);

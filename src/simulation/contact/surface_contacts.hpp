@@ -99,7 +99,7 @@ class SurfaceContacts {
     std::vector<ContactSide> sides_; ///< of the colliders, then of itself
     ParticleContacts particles_;
     ContactSet contacts_;
-    std::vector<float> most_; ///< by vertex: the most thickness that the faces around it leave room for
+    std::vector<float> most_; ///< by vertex: the most thickness that what is around it leaves room for
     std::vector<std::optional<FrameChange>> frames_; ///< by side
     std::span<const std::uint8_t> is_held_;
     bool is_begun_ = false; ///< a step, in which no particle has moved

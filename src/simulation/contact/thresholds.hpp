@@ -26,8 +26,8 @@ inline constexpr double kSamePlane = 0.5;
 inline constexpr float kReady = 2;
 /// Share of the thickness that edges and faces of a model keep: they lie between vertices, and need less.
 inline constexpr float kSurfaceShare = 0.75F;
-/// Mean edges, and least heights of the faces around: layers of one surface keep no farther apart, or its own
-/// neighbours would push each other.
+/// Mean edges, and least heights of the faces and tetrahedra around: layers of one surface keep no farther
+/// apart, or its own neighbours, and both sides of a thin body, would push each other.
 inline constexpr float kMostSelfThickness = 0.25F, kMostOfHeight = 0.4F;
 /// Mean edges, and metres: no thickness is less, since a contact has to push within it.
 inline constexpr double kLeastThickness = 0.02, kLeastThicknessOfAll = 1e-6;
