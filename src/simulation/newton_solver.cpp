@@ -201,6 +201,7 @@ void NewtonSolver::minimise(std::vector<Vec3d>& places, const PointArrays& start
         const Stopwatch stopwatch(profile.collision_seconds);
         work();
     };
+    const auto energy = [&](Places at) { return step_.energy(at, &contacts_->energy(), workers_); };
     contact([&] { contacts_->begin_step(colliders, start, places, is_held_, seconds, workers_); });
     budget.newton_steps = 1;
     for (std::uint32_t newton = 0; newton < newton_steps; ++newton) {
@@ -210,12 +211,12 @@ void NewtonSolver::minimise(std::vector<Vec3d>& places, const PointArrays& start
             last_move = step_.solve(places, &contacts_->energy(), budget, workers_).last_move;
         }
         std::size_t stopped = 0;
-        contact([&] { stopped = contacts_->advance(places, workers_); });
+        contact([&] { stopped = contacts_->advance(places, energy, workers_); });
         if (newton + 1 == newton_steps) profile.truncated_count += stopped;
         if (last_move < budget.tolerance && stopped == 0) break;
     }
     contact([&] {
-        contacts_->put_outside(places, workers_);
+        contacts_->put_outside(places, energy, workers_);
         contacts_->end_step(places);
     });
     profile.contact_count += contacts_->pushing_count(places);

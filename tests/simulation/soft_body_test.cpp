@@ -492,6 +492,29 @@ TEST(SoftBodyPhysics, SlidesDownASlopeOnlyBeyondTheAngleOfFrictionAndThenAsFastA
         EXPECT_NEAR(slide_down(degrees).friction, 0.5, 0.0025) << degrees;
 }
 
+TEST(SoftBodyPhysics, GainsNoEnergyWhereABallCrushesIt) {
+    // A jelly that would sink by half under its own weight falls as fast as waves go in it.
+    const Deformable jelly =
+        make_soft_body(make_solid_box({0.3, 0.3, 0.3}, {5, 5, 5}),
+                       {.young_modulus = 5e3, .pose = {Rotation::about({1, 1, 0}, 0.5), {0, 0, 0.6}}});
+    SimulationOptions options = with_surfaces();
+    options.friction = 0;
+    options.newton_step_count = 20;
+    Simulation simulation(jelly, test::colliders_of({make_sphere(0.15, 24, 12)}), options);
+    const auto energy = [&] {
+        double sum = test::energy(simulation);
+        for (std::size_t i = 0; i < jelly.particle_count(); ++i)
+            sum += 9.81 * double{simulation.positions()[i].z} / double{jelly.inverse_masses[i]};
+        return sum;
+    };
+    double before = energy();
+    for (int frame = 0; frame < 30; ++frame) {
+        simulation.step();
+        EXPECT_LT(energy(), 1.005 * before) << frame;
+        before = energy();
+    }
+}
+
 TEST(SoftBodyPhysics, FallsAsFastFarFromTheOriginAsNearIt) {
     double at_the_origin = 0;
     for (const float height : {0.0F, 2.0F, 30.0F, 1000.0F}) {

@@ -234,12 +234,32 @@ std::size_t SurfaceContacts::go_towards(std::span<Vec3d> places, bool carries, c
     return stopped;
 }
 
-std::size_t SurfaceContacts::advance(std::span<Vec3d> places, const Workers& workers) {
+/// Goes towards goals, or less far: particles that are stopped strain what goes on beside them, the less the
+/// shorter the way is.
+std::size_t SurfaceContacts::descend(std::span<Vec3d> places, const StepEnergy& energy,
+                                     const Workers& workers) {
+    const std::vector<Vec3d> goals(places.begin(), places.end()), from = safe_places_;
+    const PointArrays safe = safe_;
+    std::size_t stopped = go_towards(places, false, workers);
+    if (stopped == 0) return 0;
+    const double most = energy(from);
+    for (int halvings = 1; halvings <= threshold::kMostHalvings && energy(places) > most; ++halvings) {
+        safe_ = safe;
+        safe_places_ = from;
+        const double share = std::ldexp(1.0, -halvings);
+        for (std::size_t i = 0; i < goals.size(); ++i) places[i] = from[i] + (goals[i] - from[i]) * share;
+        stopped = std::max(stopped, go_towards(places, false, workers));
+    }
+    return stopped;
+}
+
+std::size_t SurfaceContacts::advance(std::span<Vec3d> places, const StepEnergy& energy,
+                                     const Workers& workers) {
     const std::vector<Vec3d> goals(places.begin(), places.end());
     std::size_t stopped = 0;
     for (int pass = 0; pass < threshold::kMostPasses; ++pass) {
         std::copy(goals.begin(), goals.end(), places.begin());
-        stopped = go_towards(places, false, workers);
+        stopped = descend(places, energy, workers);
         if (std::exchange(is_begun_, false)) unresolved_count_ += touching_count_;
         for (ContactSide& side : sides_) {
             side.set_safe(safe_);
@@ -329,8 +349,8 @@ void SurfaceContacts::add_contacts(const ContactSide& side, Places goals, bool i
     }
 }
 
-void SurfaceContacts::put_outside(std::span<Vec3d> places, const Workers& workers) {
-    if (particles_.put_outside(places, is_touching_)) advance(places, workers);
+void SurfaceContacts::put_outside(std::span<Vec3d> places, const StepEnergy& energy, const Workers& workers) {
+    if (particles_.put_outside(places, is_touching_)) advance(places, energy, workers);
 }
 
 void SurfaceContacts::end_step(Places places) {

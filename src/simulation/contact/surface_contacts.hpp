@@ -11,6 +11,7 @@
 #include <echinus/simulation.hpp>
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
@@ -59,14 +60,17 @@ class SurfaceContacts {
     /// Does any collider, or the deformable itself, have faces that collide?
     bool has_surfaces() const { return !sides_.empty(); }
 
-    /// Goes from the safe state towards these places as far as is proven safe, and measures all pairs there.
+    /// Of the step, with the contacts that were measured last.
+    using StepEnergy = std::function<double(Places)>;
+    /// Goes from the safe state towards these places as far as is proven safe and raises the energy nowhere,
+    /// and measures all pairs there.
     /// @param places  in: the goals, which the solver has found with these contacts. Out: where the particles
     /// are. Those that nothing stops keep all their digits
     /// @return how many particles were stopped
-    std::size_t advance(std::span<Vec3d> places, const Workers& workers);
+    std::size_t advance(std::span<Vec3d> places, const StepEnergy& energy, const Workers& workers);
 
     /// Puts particles outside of colliders without faces, as far as those with faces allow.
-    void put_outside(std::span<Vec3d> places, const Workers& workers);
+    void put_outside(std::span<Vec3d> places, const StepEnergy& energy, const Workers& workers);
 
     /// The friction that this step has left in contacts stays for the next.
     void end_step(Places places);
@@ -89,6 +93,7 @@ class SurfaceContacts {
     Vec3d slip_start(const ContactSide& side, const Pair& pair, const std::array<double, 4>& shares) const;
     bool find_ends(std::span<Vec3d> places, bool carries, const Workers& workers);
     std::size_t go_towards(std::span<Vec3d> places, bool carries, const Workers& workers);
+    std::size_t descend(std::span<Vec3d> places, const StepEnergy& energy, const Workers& workers);
     void find_contacts(Places goals, bool is_solved);
     void add_contacts(const ContactSide& side, Places goals, bool is_solved);
     float thickness_of(const ContactSide& side, const Pair& pair) const;
