@@ -66,11 +66,14 @@ void NewtonSolver::step() {
     deform();
     prepare_next_frame();
     if (contacts_) contacts_->begin_frame();
-    const std::uint32_t parts = part_count();
-    const auto share = [&](std::uint32_t part) {
-        return static_cast<float>(part) / static_cast<float>(parts);
-    };
-    for (std::uint32_t part = 0; part < parts; ++part) step_part(parts, {share(part), share(part + 1)});
+    float share = 1 / static_cast<float>(part_count());
+    for (FramePart part{0, 0}; part.begin < 1;) {
+        part.end = part.begin + share < 1 - share / 2 ? part.begin + share : 1;
+        if (step_part(part))
+            part.begin = part.end;
+        else
+            share /= 2;
+    }
     std::fill(deformations_.begin(), deformations_.end(), Deformation{});
     if (contacts_) {
         profile.squeezed_count += contacts_->unresolved_count();
@@ -117,12 +120,20 @@ std::uint32_t NewtonSolver::part_count() {
     return static_cast<std::uint32_t>(std::clamp(parts, 1.0, double{threshold::kMostPartsOfFrame}));
 }
 
-/// @param parts  of the frame, of which this is one
-void NewtonSolver::step_part(std::uint32_t parts, const FramePart& part) {
-    const double seconds = options.time_step / parts;
+/// @return whether colliders that move could carry what is near them so far. If not, nothing has changed, and
+/// a smaller part is to be tried; the least one is always made
+bool NewtonSolver::step_part(const FramePart& part) {
+    const float share = part.end - part.begin;
+    const double seconds = options.time_step * double{share};
     const std::vector<Collider> before = colliders;
     for (Collider& collider : colliders) collider.pose = pose_after(collider, seconds);
-    const PointArrays start = carried_start(before, part);
+    const std::optional<PointArrays> carried =
+        carried_start(before, part, share <= threshold::kLeastPartOfFrame);
+    if (!carried) {
+        colliders = before;
+        return false;
+    }
+    const PointArrays& start = *carried;
     if (contacts_) contacts_->particles().begin_step(before, colliders, motion_.places, is_held_);
     const std::vector<Vec3d> from = exact(start);
     std::vector<Vec3d> places = guess(from, seconds);
@@ -130,7 +141,7 @@ void NewtonSolver::step_part(std::uint32_t parts, const FramePart& part) {
     step_.calm(from, places, workers_);
     // In a part of a frame inertia has more of a say, and fewer steps lead as far.
     const std::uint32_t newton_steps =
-        parts > 1 ? (options.newton_step_count + 1) / 2 : options.newton_step_count;
+        share < 1 ? (options.newton_step_count + 1) / 2 : options.newton_step_count;
     minimise(places, start, seconds, newton_steps);
     const std::vector<Vec3d> velocities_before = motion_.velocities;
     const std::vector<std::uint8_t> nothing_touches(contacts_ ? 0 : places.size());
@@ -141,6 +152,7 @@ void NewtonSolver::step_part(std::uint32_t parts, const FramePart& part) {
         // A held particle is led, and has no motion of its own.
         if (is_held_[i] != 0) motion_.is_smooth[i] = 0;
     }
+    return true;
 }
 
 PointArrays NewtonSolver::places_now() const {
@@ -150,8 +162,10 @@ PointArrays NewtonSolver::places_now() const {
     return places;
 }
 
-/// Where the step begins: what colliders carry is with them.
-PointArrays NewtonSolver::carried_start(const std::vector<Collider>& before, const FramePart& part) {
+/// Where the step begins: what colliders carry is with them. None: they cannot carry it so far.
+/// @param is_least  carry it in any case
+std::optional<PointArrays> NewtonSolver::carried_start(const std::vector<Collider>& before,
+                                                       const FramePart& part, bool is_least) {
     const PointArrays from = places_now();
     PointArrays start = from;
     attachments_.follow(colliders, deforming_, part.end, start);
@@ -160,8 +174,9 @@ PointArrays NewtonSolver::carried_start(const std::vector<Collider>& before, con
     const CarryField field(before, colliders, deformations_, part, threshold::kTouch * thickness_);
     if (field.is_zero()) return start;
     field.carry(start, is_held_, workers_);
-    contacts_->carry(before, colliders, deformations_, part, from, start, is_held_, workers_);
-    return start;
+    const bool is_carried =
+        contacts_->carry(before, colliders, deformations_, part, from, start, is_held_, is_least, workers_);
+    return is_carried ? std::optional(start) : std::nullopt;
 }
 
 /// Where nothing carries a particle, all its digits are kept.

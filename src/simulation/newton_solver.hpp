@@ -25,10 +25,11 @@ class NewtonSolver : public Solver {
   private:
     void deform();
     std::uint32_t part_count();
-    void step_part(std::uint32_t parts, const FramePart& part);
+    bool step_part(const FramePart& part);
     PointArrays places_now() const;
     double fastest() const;
-    PointArrays carried_start(const std::vector<Collider>& before, const FramePart& part);
+    std::optional<PointArrays> carried_start(const std::vector<Collider>& before, const FramePart& part,
+                                             bool is_least);
     std::vector<Vec3d> exact(const PointArrays& start) const;
     std::vector<Vec3d> guess(std::span<const Vec3d> start, double seconds) const;
     void minimise(std::vector<Vec3d>& places, const PointArrays& start, double seconds,

@@ -277,7 +277,6 @@ TEST(SoftBody, MeetsNoLightSheetOnItUnderAnotherWhileAPlateComesDown) {
 }
 
 TEST(SoftBody, OnAWallThatSwaysOrTurnsOverAFloorMeetsNothingThatFallsOnIt) {
-    GTEST_SKIP() << "faces meet, and nothing is counted as squeezed";
     // It hangs down to the floor, and the other presses on what is drawn long between there and the wall.
     const ExactMap map = ExactMap::build(make_sphere(0.1, 60, 30));
     const TetrahedralMesh ball = tetrahedralize(map, {.count = 400}).mesh;

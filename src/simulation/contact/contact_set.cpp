@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 namespace echinus {
 
@@ -42,7 +41,7 @@ Vec3d turned_to_local(const std::optional<FrameChange>& frame, const Vec3d& worl
 
 ContactSet::ContactSet(std::size_t particle_count, std::size_t obstacle_count, std::size_t collider_count,
                        double gravity)
-    : gravity_(gravity), obstacle_count_(obstacle_count), first_at_(particle_count + 1),
+    : gravity_(gravity), obstacle_count_(obstacle_count), first_patch_(particle_count),
       impulses_(collider_count) {}
 
 void ContactSet::begin_frame() {
@@ -61,6 +60,7 @@ void ContactSet::begin_step(double step, std::span<const std::optional<FrameChan
         bristle.normal = turned_to_world(frame, bristle.normal);
         bristle.slip = turned_to_world(frame, bristle.slip);
     }
+    find_patches();
     clear();
 }
 
@@ -79,20 +79,15 @@ ContactSet::Bristle ContactSet::remembered(const Contact& contact) const {
     double weights = 0;
     for (std::size_t k = 0; k < 4; ++k) {
         if (contact.weights[k] == 0) continue;
-        const std::uint32_t particle = contact.particles[k];
-        for (std::uint32_t b = first_at_[particle]; b < first_at_[particle + 1]; ++b) {
-            const Bristle& bristle = bristles_[bristles_at_[b]];
-            if (bristle.key.obstacle != contact.key.obstacle) continue;
-            const auto& points = bristle.key.points;
-            const auto at =
-                static_cast<std::size_t>(std::find(points.begin(), points.end(), particle) - points.begin());
-            // Of itself a pair may come the other way round.
-            const double turn = contact.weights[k] * double{bristle.weights[at]} < 0 ? -1 : 1;
-            if (turn * dot(bristle.normal, contact.normal) < threshold::kSamePlane) continue;
-            const double weight = std::abs(contact.weights[k] * double{bristle.weights[at]});
-            mean.slip += bristle.slip * (turn * weight);
-            mean.push += bristle.push * weight;
-            weights += weight;
+        const double share = std::abs(contact.weights[k]), turn = contact.weights[k] < 0 ? -1 : 1;
+        for (std::uint32_t p = first_patch_[contact.particles[k]]; p != kNone; p = patches_[p].next) {
+            const Patch& patch = patches_[p];
+            if (patch.obstacle != contact.key.obstacle ||
+                turn * dot(patch.normal, contact.normal) < threshold::kSamePlane)
+                continue;
+            mean.slip += patch.slip * (turn * share);
+            mean.push += patch.push * share;
+            weights += patch.weight * share;
         }
     }
     if (!(weights > 0)) return {};
@@ -228,21 +223,33 @@ void ContactSet::end_step(Places places, std::span<const std::optional<FrameChan
     }
     std::sort(bristles_.begin(), bristles_.end(),
               [](const Bristle& a, const Bristle& b) { return a.key.order() < b.key.order(); });
-    index_bristles();
 }
 
-void ContactSet::index_bristles() {
-    std::fill(first_at_.begin(), first_at_.end(), 0);
-    const auto for_each_part = [&](const auto& body) {
-        for (std::uint32_t b = 0; b < bristles_.size(); ++b)
-            for (std::size_t k = 0; k < 4; ++k)
-                if (bristles_[b].weights[k] != 0) body(bristles_[b].key.points[k], b);
-    };
-    for_each_part([&](std::uint32_t particle, std::uint32_t) { ++first_at_[particle + 1]; });
-    std::partial_sum(first_at_.begin(), first_at_.end(), first_at_.begin());
-    bristles_at_.resize(first_at_.back());
-    std::vector<std::uint32_t> next(first_at_.begin(), first_at_.end() - 1);
-    for_each_part([&](std::uint32_t particle, std::uint32_t b) { bristles_at_[next[particle]++] = b; });
+/// Sums up the bristles around each particle by planes: there can be hundreds.
+void ContactSet::find_patches() {
+    patches_.clear();
+    std::fill(first_patch_.begin(), first_patch_.end(), kNone);
+    for (const Bristle& bristle : bristles_)
+        for (std::size_t k = 0; k < 4; ++k) {
+            if (bristle.weights[k] == 0) continue;
+            const double weight = std::abs(double{bristle.weights[k]});
+            // Of itself a pair may come either way round: seen from the particle.
+            const double turn = bristle.weights[k] < 0 ? -1 : 1;
+            Patch& patch = patch_at(bristle.key.points[k], bristle.key.obstacle, bristle.normal * turn);
+            patch.slip += bristle.slip * (turn * weight);
+            patch.push += bristle.push * weight;
+            patch.weight += weight;
+        }
+}
+
+/// The one of this plane, which may be new.
+ContactSet::Patch& ContactSet::patch_at(std::uint32_t particle, std::uint32_t obstacle, const Vec3d& normal) {
+    for (std::uint32_t p = first_patch_[particle]; p != kNone; p = patches_[p].next)
+        if (patches_[p].obstacle == obstacle && dot(patches_[p].normal, normal) >= threshold::kSamePlane)
+            return patches_[p];
+    patches_.push_back({obstacle, first_patch_[particle], normal, {}});
+    first_patch_[particle] = static_cast<std::uint32_t>(patches_.size() - 1);
+    return patches_.back();
 }
 
 /// @param force  on the collider
@@ -273,11 +280,10 @@ void ContactSet::archive(StateArchive& state) {
     state.require(std::is_sorted(bristles_.begin(), bristles_.end(), [](const Bristle& a, const Bristle& b) {
         return a.key.order() < b.key.order();
     }));
-    const std::size_t particle_count = first_at_.size() - 1;
+    const std::size_t particle_count = first_patch_.size();
     for (const Bristle& bristle : bristles_)
         for (std::size_t k = 0; k < 4; ++k)
             state.require(bristle.weights[k] == 0 || bristle.key.points[k] < particle_count);
-    index_bristles();
 }
 
 } // namespace echinus

@@ -86,6 +86,13 @@ class ContactSet : public ContactEnergy {
         Vec3d normal, slip; ///< in the obstacle's frame between steps, in the world during one
         double push = 0;    ///< the normal force when the step ended
     };
+    static constexpr std::uint32_t kNone = 0xFFFFFFFF;
+    /// The bristles around a particle that lie in about the same plane, seen from there.
+    struct Patch {
+        std::uint32_t obstacle, next; ///< the next one of the particle
+        Vec3d normal, slip;           ///< the slip weighted, as the push
+        double push = 0, weight = 0;
+    };
     struct Impulse {
         Vec3d linear, angular; ///< the moment about where the collider stood when the frame's last step ended
     };
@@ -93,7 +100,8 @@ class ContactSet : public ContactEnergy {
     double barrier_force(const Contact& contact) const;
     const Bristle* find(const ContactKey& key) const;
     Bristle remembered(const Contact& contact) const;
-    void index_bristles();
+    void find_patches();
+    Patch& patch_at(std::uint32_t particle, std::uint32_t obstacle, const Vec3d& normal);
     double gap_of(const Held& contact, Places places) const;
     Vec3d slip_of(const Held& contact, Places places) const;
     Vec3d held_slip(const Held& contact, Places places) const;
@@ -103,8 +111,8 @@ class ContactSet : public ContactEnergy {
     std::size_t obstacle_count_;
     std::vector<Held> contacts_;
     std::vector<Bristle> bristles_;          ///< of the step before, by key
-    std::vector<std::uint32_t> first_at_;    ///< [particle + 1] into bristles_at_
-    std::vector<std::uint32_t> bristles_at_; ///< those that a particle is a part of
+    std::vector<std::uint32_t> first_patch_; ///< [particle] into patches_
+    std::vector<Patch> patches_;             ///< in this step
     std::vector<Impulse> impulses_;          ///< by collider, in this frame
 };
 

@@ -47,11 +47,14 @@ void ContactSide::deform(PointArrays places) {
     away = {away_before.from + deformed, away_before.expected + deformed};
 }
 
-void ContactSide::end_deforming() {
+void ContactSide::end_deforming(bool is_done) {
     if (!is_deforming) return;
     is_deforming = false;
     deformed = 0;
-    away_before = away;
+    if (is_done)
+        away_before = away;
+    else
+        place_obstacle(std::move(obstacle_before));
     pairs.forget_obstacle_boxes();
 }
 
@@ -146,7 +149,8 @@ void ContactSide::measure(const Workers& workers) {
             std::max(length(base[i] - safe[i] - common_ahead), length(goal[i] - safe[i] - common_ahead)) +
             deformed;
     }
-    pairs.measure(safe, obstacle_at_start(), strayed, ahead, ready, is_elsewhere, workers);
+    pairs.measure({listed_from, safe, base, goal, strayed, ahead}, obstacle_at_start(), ready, is_elsewhere,
+                  workers);
     is_elsewhere = false;
 }
 

@@ -41,7 +41,8 @@ struct ContactSide {
     /// They go straight from where they are to there, while the surface makes the displacement that is looked
     /// at next.
     void deform(PointArrays places);
-    void end_deforming();
+    /// @param is_done  else they are back where they were
+    void end_deforming(bool is_done);
     /// Where they are at the beginning of the displacement that is looked at.
     const PointArrays& obstacle_from() const { return is_deforming ? obstacle_before : obstacle_places; }
     /// How far a pair's vertices of the obstacle come along the normal meanwhile, at most.

@@ -1,6 +1,7 @@
 #include "simulation/contact/pair_set.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <numeric>
 #include <utility>
@@ -247,31 +248,49 @@ void PairSet::add_pairs(const std::array<std::uint32_t, 2>& elements, std::vecto
     }
 }
 
-void PairSet::measure(const PointArrays& own, const PointArrays& obstacle, std::span<const float> strayed,
-                      std::span<const float> ahead, float near, bool is_elsewhere, const Workers& workers) {
+void PairSet::measure(const Course& course, const PointArrays& obstacle, float near, bool is_elsewhere,
+                      const Workers& workers) {
     if (is_elsewhere) {
         near_.clear();
         separations_.clear();
         std::fill(is_near_.begin(), is_near_.end(), std::uint8_t{0});
     }
+    const auto nearer_at = [&](std::uint32_t v) { return course.strayed[v] + 2 * course.ahead[v]; };
     // No pair is nearer by more than what two vertices could do to it.
     float most = 0;
-    for (std::size_t i = 0; i < strayed.size(); ++i) most = std::max(most, strayed[i] + 2 * ahead[i]);
+    for (std::uint32_t v = 0; v < course.strayed.size(); ++v) most = std::max(most, nearer_at(v));
     const float last = near + 2 * (most + gap_step_);
     for (std::size_t p = 0; p < listed_.size() && listed_gaps_[p] <= last; ++p) {
         if (is_near_[p] != 0) continue;
         const Pair& pair = listed_[p];
-        std::array<float, 2> closer{};
+        std::array<float, 2> nearer{};
         const std::size_t moving = moving_count(pair), of_own = own_count(pair.kind);
         for (std::size_t k = 0; k < moving; ++k) {
-            float& of_part = closer[k < of_own ? 0 : 1];
-            of_part = std::max(of_part, strayed[pair.points[k]] + 2 * ahead[pair.points[k]]);
+            float& of_part = nearer[k < of_own ? 0 : 1];
+            of_part = std::max(of_part, nearer_at(pair.points[k]));
         }
-        if (!(listed_gaps_[p] - (closer[0] + closer[1]) < near)) continue;
+        if (!(listed_gaps_[p] - (nearer[0] + nearer[1]) < near)) continue;
+        if (is_of_itself() && !(listed_gaps_[p] - nearer_by(pair, course) < near)) continue;
         is_near_[p] = 1;
         near_.push_back(pair);
     }
-    measure_new(own, obstacle, workers);
+    measure_new(course.now, obstacle, workers);
+}
+
+/// By how much the parts of a pair of itself can have come nearer, at most: by what they do not do together.
+float PairSet::nearer_by(const Pair& pair, const Course& course) const {
+    float strayed_sq = 0, ahead_sq = 0;
+    const auto add = [](float& most_sq, const Vec3f& v) { most_sq = std::max(most_sq, dot(v, v)); };
+    const std::size_t of_own = own_count(pair.kind);
+    for (std::size_t k = 0; k < of_own; ++k)
+        for (std::size_t l = of_own; l < 4; ++l) {
+            const std::uint32_t a = pair.points[k], b = pair.points[l];
+            const Vec3f now = course.now[a] - course.now[b];
+            add(strayed_sq, now - (course.listed[a] - course.listed[b]));
+            add(ahead_sq, course.base[a] - course.base[b] - now);
+            add(ahead_sq, course.goal[a] - course.goal[b] - now);
+        }
+    return std::sqrt(strayed_sq) + 2 * std::sqrt(ahead_sq);
 }
 
 /// Measures those of `near_` that are not.

@@ -51,13 +51,17 @@ class PairSet {
 
     /// The obstacle is elsewhere than when pairs were listed.
     void forget_obstacle_boxes() { obstacle_boxes_.faces.clear(); }
+    /// The course of the surface's vertices: where their pairs were listed, where they are now, and where two
+    /// displacements lead from there.
+    struct Course {
+        const PointArrays &listed, &now, &base, &goal;
+        std::span<const float> strayed, ahead; ///< [vertex] how far, at most, and along both
+    };
     /// Measures the pairs that may be nearer than `near`, or of which displacements may close half of the
     /// gap.
-    /// @param strayed  [vertex] how far each of the surface's is from where the pairs were listed
-    /// @param ahead    [vertex] and how far its displacement leads from here
     /// @param is_elsewhere  whether vertices have moved since the last call; else what was measured stays
-    void measure(const PointArrays& own, const PointArrays& obstacle, std::span<const float> strayed,
-                 std::span<const float> ahead, float near, bool is_elsewhere, const Workers& workers);
+    void measure(const Course& course, const PointArrays& obstacle, float near, bool is_elsewhere,
+                 const Workers& workers);
 
     void archive(StateArchive& state);
 
@@ -86,6 +90,7 @@ class PairSet {
     void list_measured(const Displacements& displacements, std::size_t known_count);
     float closing_of(const Pair& pair, const Vec3f& normal, const Displacements& displacements) const;
     void add_pairs(const std::array<std::uint32_t, 2>& elements, std::vector<Pair>& pairs) const;
+    float nearer_by(const Pair& pair, const Course& course) const;
     void measure_new(const PointArrays& own, const PointArrays& obstacle, const Workers& workers);
     const Boxes& obstacle_boxes() const { return is_of_itself() ? own_boxes_ : obstacle_boxes_; }
 

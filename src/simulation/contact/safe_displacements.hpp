@@ -27,11 +27,14 @@ class SafeDisplacements {
     Places find(const Workers& workers);
     /// Whether find() has ended with nothing more to correct.
     bool has_converged() const { return has_converged_; }
-    /// Pairs that touch in the safe state, or cannot be told apart.
-    std::size_t touching_count() const { return touching_count_; }
+    /// Pairs that touch in the safe state, or that are not kept apart: what is held closes them, or there is
+    /// too little room.
+    std::size_t unresolved_count() const { return unresolved_count_; }
 
   private:
-    bool correct(ContactSide& side, bool all);
+    float room_of(const ContactSide& side, float gap) const;
+    bool closes(const ContactSide& side, std::size_t index, float& enough) const;
+    bool correct(ContactSide& side, std::vector<float>& enough);
     bool push_apart(ContactSide& side, const Pair& pair, const Vec3f& normal, float room);
 
     std::span<ContactSide> sides_;
@@ -39,8 +42,9 @@ class SafeDisplacements {
     std::span<const std::uint8_t> is_held_;
     float share_;
     std::vector<Vec3d> ends_;
-    std::vector<std::uint8_t> is_pushed_, was_pushed_; ///< in this round, and in the last one
-    std::size_t touching_count_ = 0;
+    std::vector<float> pushed_;              ///< [particle] how far in all
+    std::vector<std::vector<float>> enough_; ///< [side][pair] as of closes()
+    std::size_t unresolved_count_ = 0;
     bool has_converged_ = false;
 };
 

@@ -112,13 +112,12 @@ void SurfaceContacts::place_obstacle(std::size_t collider, std::span<const Vec3f
         if (side.number == collider) side.place_obstacle(std::move(places));
 }
 
-void SurfaceContacts::carry(const std::vector<Collider>& before, const std::vector<Collider>& after,
+bool SurfaceContacts::carry(const std::vector<Collider>& before, const std::vector<Collider>& after,
                             std::span<const Deformation> deformations, const FramePart& part,
                             const PointArrays& from, PointArrays& carried,
-                            std::span<const std::uint8_t> is_held, const Workers& workers) {
+                            std::span<const std::uint8_t> is_held, bool in_any_case, const Workers& workers) {
     is_held_ = is_held;
     start_ = from;
-    is_carried_ = true;
     set_safe(from);
     std::vector<Vec3d> places(safe_places_.size());
     for (std::size_t i = 0; i < places.size(); ++i) places[i] = Vec3d(carried[i]);
@@ -137,10 +136,13 @@ void SurfaceContacts::carry(const std::vector<Collider>& before, const std::vect
         }
         side.list(places, workers);
     }
-    go_towards(places, true, workers);
-    unresolved_count_ += touching_count_;
-    for (ContactSide& side : sides_) side.end_deforming();
+    const bool is_safe = find_ends(places, threshold::kMostClosedByCarrying, workers);
+    is_carried_ = is_safe || in_any_case;
+    for (ContactSide& side : sides_) side.end_deforming(is_carried_);
+    if (!is_carried_) return false;
+    unresolved_count_ += is_safe ? unresolved_ : std::max(unresolved_, std::size_t{1});
     for (std::size_t i = 0; i < places.size(); ++i) carried.set(i, Vec3f(places[i]));
+    return true;
 }
 
 double SurfaceContacts::overlap_ahead(const std::vector<Collider>& colliders, const PointArrays& from,
@@ -186,15 +188,16 @@ void SurfaceContacts::begin_step(const std::vector<Collider>& colliders, const P
 
 /// Of displacements to goals the ends as far as the planes between the pairs allow.
 /// @param places  in: the goals. Out: the ends
-/// @return whether all pairs of these displacements are listed
-bool SurfaceContacts::find_ends(std::span<Vec3d> places, bool carries, const Workers& workers) {
+/// @param share  of each gap that may be closed
+/// @return whether nothing meets on the way to the ends, but what is counted as unresolved
+bool SurfaceContacts::find_ends(std::span<Vec3d> places, float share, const Workers& workers) {
     const std::vector<Vec3d> goals(places.begin(), places.end());
-    SafeDisplacements displacements(sides_, goals, is_held_, carries ? threshold::kMostClosedByCarrying : 1);
+    SafeDisplacements displacements(sides_, goals, is_held_, share);
     for (int round = 0; round < threshold::kMostListingRounds; ++round) {
         const Places ends = displacements.find(workers);
-        touching_count_ = displacements.touching_count() + (displacements.has_converged() ? 0 : 1);
-        if (!displacements.has_converged() && !carries) return false;
+        unresolved_ = displacements.unresolved_count();
         for (std::size_t i = 0; i < places.size(); ++i) places[i] = is_held_[i] != 0 ? goals[i] : ends[i];
+        if (!displacements.has_converged()) return false;
         bool is_any_added = false;
         for (ContactSide& side : sides_) is_any_added = side.list(places, workers) || is_any_added;
         if (!is_any_added) return true;
@@ -202,23 +205,18 @@ bool SurfaceContacts::find_ends(std::span<Vec3d> places, bool carries, const Wor
     return false;
 }
 
-/// Goes from the safe state towards goals as far as the planes between the pairs allow. @param places  in:
-/// the goals. Out: the new safe state, whose pairs are not measured yet
+/// Goes from the safe state towards goals as far as the planes between the pairs allow.
+/// @param places  in: the goals. Out: the new safe state, whose pairs are not measured yet
 /// @return how many particles were stopped
-std::size_t SurfaceContacts::go_towards(std::span<Vec3d> places, bool carries, const Workers& workers) {
+std::size_t SurfaceContacts::go_towards(std::span<Vec3d> places, const Workers& workers) {
     const std::size_t count = own_->vertex_count();
     const std::vector<Vec3d> goals(places.begin(), places.end());
-    bool is_covered = false;
-    for (int halvings = 0; !is_covered; ++halvings) {
-        // Half as far, if pairs go on being found; and at last those that are not held stay.
-        const double share = halvings < threshold::kMostHalvings ? std::ldexp(1.0, -halvings) : 0;
-        // Carried particles have to go all the way.
-        for (std::size_t i = 0; i < count && halvings > 0 && !carries; ++i)
-            if (is_held_[i] == 0) places[i] = safe_places_[i] + (goals[i] - safe_places_[i]) * share;
-        is_covered = find_ends(places, carries, workers);
-        if (halvings == threshold::kMostHalvings) break;
+    // Half as far, where too little room or ever more pairs are found; and at last what is not held stays.
+    for (int halvings = 0; !find_ends(places, 1, workers) && halvings < threshold::kMostHalvings;) {
+        const double share = ++halvings < threshold::kMostHalvings ? std::ldexp(1.0, -halvings) : 0;
+        for (std::size_t i = 0; i < count; ++i)
+            places[i] = is_held_[i] != 0 ? goals[i] : safe_places_[i] + (goals[i] - safe_places_[i]) * share;
     }
-    if (!is_covered) ++touching_count_;
     std::size_t stopped = 0;
     missed_ = 0;
     for (std::size_t i = 0; i < count; ++i) {
@@ -240,7 +238,7 @@ std::size_t SurfaceContacts::descend(std::span<Vec3d> places, const StepEnergy& 
                                      const Workers& workers) {
     const std::vector<Vec3d> goals(places.begin(), places.end()), from = safe_places_;
     const PointArrays safe = safe_;
-    std::size_t stopped = go_towards(places, false, workers);
+    std::size_t stopped = go_towards(places, workers);
     if (stopped == 0) return 0;
     const double most = energy(from);
     for (int halvings = 1; halvings <= threshold::kMostHalvings && energy(places) > most; ++halvings) {
@@ -248,7 +246,7 @@ std::size_t SurfaceContacts::descend(std::span<Vec3d> places, const StepEnergy& 
         safe_places_ = from;
         const double share = std::ldexp(1.0, -halvings);
         for (std::size_t i = 0; i < goals.size(); ++i) places[i] = from[i] + (goals[i] - from[i]) * share;
-        stopped = std::max(stopped, go_towards(places, false, workers));
+        stopped = std::max(stopped, go_towards(places, workers));
     }
     return stopped;
 }
@@ -260,7 +258,7 @@ std::size_t SurfaceContacts::advance(std::span<Vec3d> places, const StepEnergy& 
     for (int pass = 0; pass < threshold::kMostPasses; ++pass) {
         std::copy(goals.begin(), goals.end(), places.begin());
         stopped = descend(places, energy, workers);
-        if (std::exchange(is_begun_, false)) unresolved_count_ += touching_count_;
+        if (std::exchange(is_begun_, false)) unresolved_count_ += unresolved_;
         for (ContactSide& side : sides_) {
             side.set_safe(safe_);
             side.measure_towards(goals, workers);

@@ -40,9 +40,12 @@ class SurfaceContacts {
     /// @param deformations  [collider] in the frame of which the step is a part
     /// @param from  safe
     /// @param carried  in: where the field of the colliders carries each particle. Out: where it begins
-    void carry(const std::vector<Collider>& before, const std::vector<Collider>& after,
+    /// @param in_any_case  even if something meets then, which is counted
+    /// @return whether nothing meets. If not, nothing has changed, but in any case
+    bool carry(const std::vector<Collider>& before, const std::vector<Collider>& after,
                std::span<const Deformation> deformations, const FramePart& part, const PointArrays& from,
-               PointArrays& carried, std::span<const std::uint8_t> is_held, const Workers& workers);
+               PointArrays& carried, std::span<const std::uint8_t> is_held, bool in_any_case,
+               const Workers& workers);
 
     /// By how much displacements to these places would close pairs beyond their gaps, at most; length.
     /// Colliders stand where they are.
@@ -91,8 +94,8 @@ class SurfaceContacts {
   private:
     void set_safe(const PointArrays& places);
     Vec3d slip_start(const ContactSide& side, const Pair& pair, const std::array<double, 4>& shares) const;
-    bool find_ends(std::span<Vec3d> places, bool carries, const Workers& workers);
-    std::size_t go_towards(std::span<Vec3d> places, bool carries, const Workers& workers);
+    bool find_ends(std::span<Vec3d> places, float share, const Workers& workers);
+    std::size_t go_towards(std::span<Vec3d> places, const Workers& workers);
     std::size_t descend(std::span<Vec3d> places, const StepEnergy& energy, const Workers& workers);
     void find_contacts(Places goals, bool is_solved);
     void add_contacts(const ContactSide& side, Places goals, bool is_solved);
@@ -109,9 +112,9 @@ class SurfaceContacts {
     std::span<const std::uint8_t> is_held_;
     bool is_begun_ = false; ///< a step, in which no particle has moved
     float most_missed_ = 0;
-    double missed_ = 0;              ///< how far a particle has ended from its goal, at most
-    std::size_t touching_count_ = 0; ///< pairs that touch at the safe state
-    std::size_t unresolved_count_ = 0;
+    double missed_ = 0;                     ///< how far a particle has ended from its goal, at most
+    std::size_t unresolved_ = 0;            ///< of the displacements that were looked at last
+    std::size_t unresolved_count_ = 0;      ///< in this frame
     PointArrays start_;                     ///< where the step began, before anything was carried
     bool is_carried_ = false;               ///< in this step
     PointArrays safe_;                      ///< the safe state
