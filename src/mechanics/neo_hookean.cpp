@@ -72,13 +72,12 @@ double norm_sq(const Matrix3& m) {
     return dot(m[0], m[0]) + dot(m[1], m[1]) + dot(m[2], m[2]);
 }
 
-/// The change of strain since the step began, as (F - F0)^T F0 symmetrised: what turns is not damped, to
-/// first order in the change. Its derivative by F is F0 times the result.
+/// The change of Green's strain, (F^T F - F0^T F0) / 2, since the step began: none where an element only
+/// turns. Its derivative by F is F times the result.
 Matrix3 strain_change(const Matrix3& f, const Matrix3& before) {
     std::array<std::array<double, 3>, 3> e{};
     for (std::size_t i = 0; i < 3; ++i)
-        for (std::size_t j = 0; j < 3; ++j)
-            e[i][j] = (dot(f[i] - before[i], before[j]) + dot(f[j] - before[j], before[i])) / 2;
+        for (std::size_t j = 0; j < 3; ++j) e[i][j] = (dot(f[i], f[j]) - dot(before[i], before[j])) / 2;
     return {Vec3d{e[0][0], e[1][0], e[2][0]}, Vec3d{e[0][1], e[1][1], e[2][1]},
             Vec3d{e[0][2], e[1][2], e[2][2]}};
 }
@@ -153,7 +152,7 @@ void NeoHookean::add_derivatives(Places places, std::span<Vec3d> gradient, Block
         for (std::size_t c = 0; c < 3; ++c) stress[c] = f[c] * mu + areas[c] * pressure;
         if (viscosity > 0) {
             const Matrix3 change = strain_change(f, before_[t]);
-            for (std::size_t c = 0; c < 3; ++c) stress[c] += times(before_[t], change[c]) * (2 * viscosity);
+            for (std::size_t c = 0; c < 3; ++c) stress[c] += times(f, change[c]) * (2 * viscosity);
         }
         const std::array<Vec3d, 4> by_corner = corner_gradients(tetrahedron);
         for (std::size_t i = 0; i < 4; ++i)
@@ -178,12 +177,11 @@ void NeoHookean::add_derivatives(Places places, std::span<Vec3d> gradient, Block
             add(moved_by(mode.matrix), std::abs(mode.value));
         if (!(viscosity > 0)) return;
         // Of the change of strain, six components: the symmetric matrices with one or two entries.
-        const Matrix3& b = before_[t];
         for (std::size_t p = 0; p < 3; ++p)
             for (std::size_t q = p; q < 3; ++q) {
                 Matrix3 mode{};
-                mode[p] += b[q] * 0.5;
-                mode[q] += b[p] * 0.5;
+                mode[p] += f[q] * 0.5;
+                mode[q] += f[p] * 0.5;
                 add(moved_by(mode), viscosity * (p == q ? 2 : 4));
             }
     });
