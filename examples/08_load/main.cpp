@@ -12,13 +12,14 @@ int main() try {
     constexpr double kMass = 0.3; // of the ball, kg; the cloth has 0.8
     constexpr std::uint32_t kFrameCount = 360, kMeasuredFrom = 300;
 
-    ClothOptions sheet{.column_count = 30, .row_count = 30, .width = 2, .height = 2};
-    for (std::uint32_t i = 0; i < 30; ++i)
-        for (const std::uint32_t pin : {i, 29 * 30 + i, 30 * i, 30 * i + 29}) sheet.pins.push_back(pin);
+    ClothOptions sheet{.column_count = 20, .row_count = 20, .width = 2, .height = 2};
+    for (std::uint32_t i = 0; i < 20; ++i)
+        for (const std::uint32_t pin : {i, 19 * 20 + i, 20 * i, 20 * i + 19}) sheet.pins.push_back(pin);
     Collider ball{.map = ExactMap::build(make_sphere(0.3, 40, 20))};
     ball.pose.translation = {0, 0, 0.8};
     SimulationOptions options;
     options.surface_collision = true;
+    options.thickness = 0.01;
     Simulation simulation(make_cloth(sheet), {ball}, options);
 
     Vec3d velocity, mean_force;

@@ -5,7 +5,7 @@
 
 #include <stdio.h>
 
-#define FRAME_COUNT 120
+#define FRAME_COUNT 60
 #define CLOTH_DENSITY 0.125 // kg/m^2
 #define MEASURED_COUNT 12
 
@@ -16,7 +16,7 @@ static echinus_status fill_ball(echinus_tetrahedra** organ) {
     echinus_status status = echinus_mesh_sphere(0.08, 60, 30, &ball); // metres, kilograms, seconds
     if (!status) status = echinus_map_build_exact(ball, NULL, &map);
     echinus_tetrahedralize_options_init(&options, sizeof options);
-    options.count = 1000;
+    options.count = 500;
     if (!status) status = echinus_tetrahedralize(map, &options, organ, NULL);
     echinus_map_destroy(map);
     echinus_mesh_destroy(ball);
@@ -37,7 +37,7 @@ static echinus_status make_organ(const echinus_tetrahedra* organ, echinus_deform
 static echinus_status make_cloth(echinus_deformable** cloth) {
     echinus_cloth_options options;
     echinus_cloth_options_init(&options, sizeof options);
-    options.column_count = options.row_count = 20;
+    options.column_count = options.row_count = 15;
     options.width = options.height = 0.4;
     options.pose.translation[2] = 0.22;
     return echinus_deformable_cloth(&options, cloth);
@@ -59,6 +59,7 @@ static echinus_status drop(const echinus_deformable* deformable, const echinus_m
     echinus_status status;
     echinus_simulation_options_init(&options, sizeof options);
     options.density = CLOTH_DENSITY;
+    options.thickness = 0.004;
     options.surface_collision = options.self_collision = 1;
     echinus_collider_init(&collider, sizeof collider, dish);
     status = echinus_simulation_create(deformable, &collider, 1, &options, &simulation);
