@@ -200,8 +200,6 @@ export interface Figures {
     stepMs: number;
     constraintMs: number;
     collisionMs: number;
-    /** Particle queries per second of collision. */
-    queriesPerSecond: number;
     /** Judged by the exact map, whichever map the cloth uses; an open model has no inside. */
     inside?: number;
     stepCount: number;

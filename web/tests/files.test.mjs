@@ -134,8 +134,8 @@ test('an open mesh is reported with the number of its border edges', async () =>
     await page.locator('input[name=map][value=distance]').check();
     await page.waitForFunction(() => document.getElementById('map-note').textContent.includes('paper') || !document.getElementById('notice').hidden);
     await page.locator('#restart').click();
-    await page.waitForFunction(() => Number(document.body.dataset.frame) < 100);
-    await untilFrame(page, 100);
+    await page.waitForFunction(() => Number(document.body.dataset.frame) < 25);
+    await untilFrame(page, 25);
     await picture(page, 'open_mesh');
     await page.locator('input[name=map][value=exact]').check();
     await choose(page, 'closed.off', tetrahedra()['t.off']);
@@ -158,9 +158,9 @@ test('a line of faults shows only faintly through the cloth that hides it', asyn
         await page.waitForTimeout(500);
     };
     // The cloth is held above it, right after it has begun to fall anew.
-    await untilFrame(page, 40);
+    await untilFrame(page, 10);
     await page.locator('#restart').click();
-    await page.waitForFunction(() => Number(document.body.dataset.frame) < 30 && (document.getElementById('pause').click(), true));
+    await page.waitForFunction(() => Number(document.body.dataset.frame) < 8 && (document.getElementById('pause').click(), true));
     await page.waitForFunction(() => document.body.dataset.paused === 'true');
     await turn('ArrowDown', 5);
     const beside = await red();
@@ -189,7 +189,7 @@ test('the cloth on an open mesh can be pulled, however small the mesh is', async
     await untilFrame(page, 1);
     await choose(page, 'small.obj', OPEN_TETRAHEDRON.replace(/^v .*$/gm, (line) => line.replace(/[\d.]+/g, (number) => String(0.01 * number))));
     await untilReport(page, '3 border edges');
-    await page.waitForFunction(() => Number(document.body.dataset.frame) < 40);
+    await page.waitForFunction(() => Number(document.body.dataset.frame) < 10);
     await page.keyboard.press('Space'); // above the model
     const { x, y, width, height } = await page.locator('#canvas').boundingBox();
     // Down the middle of the picture: if its border were an obstacle, the far half of the cloth could not be grabbed.

@@ -40,7 +40,7 @@ const picture = async (name) => {
 test('in Firefox the page opens with a falling cloth, no face of which is through the model', { skip }, async () => {
     await page.open(`${address}#model=torus&particles=900`);
     await page.until(() => /no face through the model/.test(document.getElementById('headline').textContent));
-    await untilFrame(60);
+    await untilFrame(15);
     assert.equal(await page.run(() => document.getElementById('figure-inside').textContent), '0');
     await picture('firefox');
     assert.deepEqual(await page.run(() => window.complaints), []);
@@ -58,7 +58,7 @@ test('in Firefox the mouse turns the view, and pulls the cloth', { skip }, async
     const before = await frame();
     await page.drag([at(0.5, 0.5), at(0.5, 0.6), at(0.5, 0.7)]);
     await page.until(() => window.dragged);
-    await untilFrame(before + 30);
+    await untilFrame(before + 8);
     assert.equal(await page.run(() => document.getElementById('figure-inside').textContent), '0');
     assert.deepEqual(await page.run(() => window.complaints), []);
 });
@@ -80,7 +80,7 @@ test('in Firefox a file that is dropped on the page is opened, and its map is sh
 test('in Firefox the figure deforms with its skirt on it', { skip }, async () => {
     await page.open(`${address}#model=figure&particles=600`);
     await page.until(() => /no face through the model/.test(document.getElementById('headline').textContent));
-    await untilFrame(120);
+    await untilFrame(30);
     await picture('firefox_figure');
     assert.match(await page.run(() => document.getElementById('headline').textContent), /no face through the model/);
     assert.deepEqual(await page.run(() => window.complaints), []);

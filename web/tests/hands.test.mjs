@@ -23,13 +23,13 @@ async function verticesOf(page, name) {
 
 test('a ball follows the pointer, pushes the cloth, and gets no particle into the model', async () => {
     const page = await browser.open('#model=torus&particles=900', SMALL);
-    await untilFrame(page, 200);
+    await untilFrame(page, 50);
     const before = await verticesOf(page, 'cloth');
     await page.locator('input[name=hand][value=ball]').check();
     const { x, y, width, height } = await page.locator('#canvas').boundingBox();
     for (const [across, down] of [[0.3, 0.55], [0.45, 0.5], [0.5, 0.55], [0.6, 0.6]]) {
         await page.mouse.move(x + across * width, y + down * height);
-        await untilFrame(page, 60 + (await frameOf(page)));
+        await untilFrame(page, 15 + (await frameOf(page)));
     }
     await picture(page, 'ball');
     const after = await verticesOf(page, 'cloth');
@@ -37,7 +37,7 @@ test('a ball follows the pointer, pushes the cloth, and gets no particle into th
     assert.ok(Math.max(...moved) > 0.1, `by at most ${Math.max(...moved)}`);
     assert.equal(await figure(page, 'inside'), '0');
     await page.locator('input[name=hand][value=cloth]').check();
-    await untilFrame(page, 30 + (await frameOf(page)));
+    await untilFrame(page, 8 + (await frameOf(page)));
     assert.equal(await page.locator('#notice').isVisible(), false);
     assert.deepEqual(page.complaints, []);
     await browser.close(page);
@@ -45,18 +45,18 @@ test('a ball follows the pointer, pushes the cloth, and gets no particle into th
 
 test('a model that is shaken moves, takes the cloth along, and comes back', async () => {
     const page = await browser.open('#model=torus&particles=900&hand=model', SMALL);
-    await untilFrame(page, 200);
+    await untilFrame(page, 50);
     const still = await verticesOf(page, 'model');
     const { x, y, width, height } = await page.locator('#canvas').boundingBox();
     await page.mouse.move(x + 0.5 * width, y + 0.5 * height);
     await page.mouse.down();
     assert.ok(await page.locator('#canvas.dragging').isVisible());
     await page.mouse.move(x + 0.6 * width, y + 0.4 * height, { steps: 3 });
-    await untilFrame(page, 90 + (await frameOf(page)));
+    await untilFrame(page, 22 + (await frameOf(page)));
     const away = (points) => Math.hypot(...points[0].map((c, k) => c - still[0][k]));
     assert.ok(away(await verticesOf(page, 'model')) > 0.2);
     await page.mouse.up();
-    await untilFrame(page, 300 + (await frameOf(page)));
+    await untilFrame(page, 75 + (await frameOf(page)));
     assert.ok(away(await verticesOf(page, 'model')) < 0.02);
     assert.equal(await figure(page, 'inside'), '0');
     assert.deepEqual(page.complaints, []);

@@ -13,7 +13,7 @@ after(() => browser?.stop());
 
 test('the page opens with the cloth already falling and an empty console', async () => {
     const page = await browser.open('', { fresh: true });
-    await untilFrame(page, 40);
+    await untilFrame(page, 10);
     assert.equal(await figure(page, 'inside'), '0');
     assert.ok(numberOf(await figure(page, 'bytes')) > 0);
     assert.match(await page.locator('#subtitle').textContent(), hasHorse ? /^horse\.3ds, 7\u2009160 faces$/ : /^torus/);
@@ -181,7 +181,7 @@ test('a list gives the keys back once the pointer has chosen from it', async () 
 
 test('a click on a figure says what it means, and the time of a step stands beside what it simulates', async () => {
     const page = await browser.open('#model=torus&particles=400', SMALL);
-    await page.waitForFunction(() => /^\d+(\.\d+)?\u2009ms$/.test(document.getElementById('figure-step').textContent) && document.getElementById('name-step').textContent === 'a 4.17\u2009ms step takes');
+    await page.waitForFunction(() => /^\d+(\.\d+)?\u2009ms$/.test(document.getElementById('figure-step').textContent) && document.getElementById('name-step').textContent === 'a 16.7\u2009ms step takes');
     for (const figure of await page.locator('#figures > div:visible').all()) {
         await figure.click();
         assert.match(await page.locator('#remark').textContent(), new RegExp(`^${await figure.locator('dt').textContent()}: .{20}`));
@@ -212,7 +212,7 @@ test('the saved picture is a PNG file of the canvas', async () => {
 
 test('a narrow screen shows everything without scrolling sideways', async () => {
     const page = await browser.open('#particles=2500', { viewport: { width: 390, height: 844 }, hasTouch: true });
-    await untilFrame(page, 30);
+    await untilFrame(page, 8);
     assert.ok(await page.evaluate(() => document.documentElement.scrollWidth <= innerWidth));
     await picture(page, 'narrow');
     await browser.close(page);
@@ -220,7 +220,7 @@ test('a narrow screen shows everything without scrolling sideways', async () => 
 
 test('in the dark the page is dark', async () => {
     const page = await browser.open('#model=torus&particles=2500&colour=depth', { colorScheme: 'dark' });
-    await untilFrame(page, 160);
+    await untilFrame(page, 40);
     assert.equal(await page.evaluate(() => getComputedStyle(document.body).backgroundColor), 'rgb(27, 29, 33)');
     await picture(page, 'dark');
     await browser.close(page);

@@ -1,15 +1,15 @@
 import { type Cuts, type Figures, type MapNews, type ModelNews, isInsideOut } from '../protocol';
 import type { Counts } from '../side';
 import { FAULT } from '../view/colours';
-import { byId, bytes, count, make, milliseconds, numbered, perSecond, swatch, writeCount } from './elements';
+import { byId, bytes, count, make, milliseconds, numbered, swatch, writeCount } from './elements';
 import { remark } from './notice';
 
 /** How often the figures are updated: flickering numbers are unreadable. */
 const PERIOD_MS = 250;
 
 /** The averaged quantities. */
-type Sums = Record<'stepMs' | 'constraintMs' | 'collisionMs' | 'queriesPerSecond', number>;
-const NOTHING: Readonly<Sums> = { stepMs: 0, constraintMs: 0, collisionMs: 0, queriesPerSecond: 0 };
+type Sums = Record<'stepMs' | 'constraintMs' | 'collisionMs', number>;
+const NOTHING: Readonly<Sums> = { stepMs: 0, constraintMs: 0, collisionMs: 0 };
 
 /** The strip of figures. Times are means over the steps since the last update. */
 export class FigureStrip {
@@ -78,7 +78,6 @@ export class FigureStrip {
         byId('figure-step').textContent = milliseconds(mean('stepMs'));
         byId('figure-constraints').textContent = milliseconds(mean('constraintMs'));
         byId('figure-collision').textContent = milliseconds(mean('collisionMs'));
-        byId('figure-queries').textContent = perSecond(mean('queriesPerSecond'));
         this.#writeInside();
         this.#forgetSteps();
     }

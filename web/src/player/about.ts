@@ -34,7 +34,8 @@ function showMeans({ particles, ms_per_frame: ms, ns_per_query }: Description['f
     byId('figure-step').textContent = milliseconds(ms.total);
     byId('figure-constraints').textContent = milliseconds(ms.constraints);
     byId('figure-collision').textContent = milliseconds(ms.collision);
-    byId('figure-queries').textContent = ns_per_query > 0 ? perSecond(1e9 / ns_per_query) : '\u2013';
+    byId('figure-queries').textContent = perSecond(1e9 / ns_per_query);
+    byId('figure-queries').parentElement!.hidden = ns_per_query === 0; // newton asks a map about few of its particles
 }
 
 function rowsOf({ model, figures, frames, cloth_faces, machine, version }: Description): [string, string][] {

@@ -32,12 +32,26 @@ export function sceneFor(settings: Settings, body: Body, act: Act, { falls } = {
         colliders: [{ model: MODEL }, floorOf(body), ...(settings.hand === 'ball' ? [ballOf(body)] : [])],
         ...own,
         ...(own.cloth && { cloth: { thickness, ...own.cloth } }),
-        material: { friction: settings.friction, ...own.material },
+        material: { ...cottonBy(radius), friction: settings.friction, ...own.material },
         gravity: UNIT[body.up].map((part) => -9.81 * radius * part) as [number, number, number],
         surface_collision: surfaces,
         self_collision: surfaces && settings.self,
         untangle: surfaces && falls, // it may intersect where particles alone have collided
         at_rest: { distance: 0.001 * radius, speed: 0.1 * radius },
+    };
+}
+
+/**
+ * A cotton, as beside a model with a radius of 1 m. Where all lengths are R times as large and times are the same, density, stiffness and bending stiffness grow as 1, R^2 and R^4;
+ * all of them divided by R, they stay within the library's ranges for more models.
+ */
+function cottonBy(radius: number) {
+    const within = (value: number, least: number, most: number) => Math.min(most, Math.max(least, value));
+    return {
+        density: within(0.2 / radius, 1e-6, 1e6), // kg/m^2
+        stretch_stiffness: within(1000 * radius, 1e-6, 1e9), // N/m
+        shear_stiffness: within(400 * radius, 0, 1e9),
+        bending_stiffness: within(1e-5 * radius ** 3, 0, 1e6), // N m
     };
 }
 

@@ -2,7 +2,7 @@ import type { Simulation } from 'echinus';
 import type { Triple } from '../protocol';
 
 /**
- * A pointer that holds a particle and its near neighbours. It sets their velocities, so sticks still pull at them and
+ * A pointer that holds a particle and its near neighbours. It sets their velocities, so the cloth still pulls at them and
  * the model still stops them: no particle can be dragged into it.
  */
 export class Hand {
@@ -34,8 +34,8 @@ export class Hand {
     pull(simulation: Simulation, timeStep: number, limit: number): void {
         const { positions } = simulation;
         for (const { particle, offset } of this.#held) {
-            // Reaches the target in five time steps: quick to the eye, and soft enough for the sticks to follow.
-            const velocity = [0, 1, 2].map((k) => (this.#target[k] + offset[k] - positions[3 * particle + k]) / (5 * timeStep));
+            // Alone it would reach the target in a step; the cloth, which shares the motion, keeps it back.
+            const velocity = [0, 1, 2].map((k) => (this.#target[k] + offset[k] - positions[3 * particle + k]) / timeStep);
             const speed = Math.hypot(...velocity);
             const share = speed > limit ? limit / speed : 1;
             simulation.setParticleVelocity(particle, velocity.map((part) => share * part));

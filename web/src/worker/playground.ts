@@ -22,7 +22,7 @@ const FRAME_BUDGET_MS = { least: 14, most: 100, share: 0.85 };
 const CREASED_FACES = 60_000;
 
 /** How far the visitor's hand reaches around the particle that it grabs, in radii. */
-const HAND = 0.06;
+const HAND = 0.1;
 
 /** Radii per second, of whatever a visitor holds. */
 const FASTEST = 12;
@@ -299,7 +299,7 @@ export class Playground {
         this.#moveModel();
         const wind = this.#windAt(seconds);
         if (wind.some((part) => part !== 0)) simulation.blow(wind, 4);
-        this.#act.steer?.(simulation, seconds);
+        this.#act.steer?.(simulation, seconds, this.#scene.timeStep);
         this.hand.pull(simulation, this.#scene.timeStep, FASTEST * radius);
         if (simulation.colliderCount > BALL) this.#ball.move(simulation, this.exactMap, BALL, this.#scene.timeStep);
         simulation.step();
@@ -363,7 +363,6 @@ export class Playground {
         const wrong = this.#wrongOf(filled.positions);
         const after = simulation.profile;
         const perStep = 1000 / Math.max(1, stepCount);
-        const collisionSeconds = after.collisionSeconds - before.collisionSeconds;
         const figures: Figures = {
             frame: this.#frame,
             paused,
@@ -371,8 +370,7 @@ export class Playground {
             stepSeconds: this.#scene.timeStep,
             stepMs: stepCount > 0 ? ms / stepCount : 0,
             constraintMs: perStep * (after.constraintSeconds - before.constraintSeconds),
-            collisionMs: perStep * collisionSeconds,
-            queriesPerSecond: collisionSeconds > 0 ? (after.queryCount - before.queryCount) / collisionSeconds : 0,
+            collisionMs: perStep * (after.collisionSeconds - before.collisionSeconds),
             ...(this.#report.closed && { inside: wrong.length }),
             stepCount,
         };

@@ -23,7 +23,7 @@ export interface Act {
     /** The surfaces of soft bodies. The caller deletes them. */
     bodies?(echinus: Echinus): Mesh[];
     /** Sets velocities of particles before each step. */
-    steer?(simulation: Simulation, seconds: number): void;
+    steer?(simulation: Simulation, seconds: number, timeStep: number): void;
     /** The model's own motion at a time, where it has one: velocities of the pose of its frame. */
     motion?(seconds: number): { linear: Triple; angular: Triple };
     /** The air's velocity at a time, in radii per second. */

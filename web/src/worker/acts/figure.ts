@@ -106,9 +106,8 @@ export function figure(): Act {
         lasts: Infinity,
         thickness: ({ thickness, particles }) => (0.55 * thickness * LENGTH) / (cut(particles).rings - 1),
         scene: ({ particles }) => ({
-            cloth: { mesh: 'skirt', bending: 'sticks', attachments: Array.from({ length: 2 * cut(particles).around }, (_, i) => i) },
-            material: { drag: 0.008 },
-            time_step: 1 / 120, // each step builds a map
+            cloth: { mesh: 'skirt', attachments: Array.from({ length: 2 * cut(particles).around }, (_, i) => i) },
+            material: { air_drag: 1 },
         }),
         cloth(echinus, { particles }) {
             const { rings, around } = cut(particles);

@@ -26,8 +26,7 @@ export function flag(): Act {
         lasts: Infinity,
         thickness: ({ thickness, particles }) => (0.8 * thickness * WIDTH) / (columnCount(particles) - 1),
         scene: ({ particles }) => ({
-            cloth: { mesh: 'flag', bending: 'sticks', attachments: Array.from({ length: rowsOf(particles) }, (_, row) => row * columnCount(particles)) },
-            material: { drag: 0.002 },
+            cloth: { mesh: 'flag', attachments: Array.from({ length: rowsOf(particles) }, (_, row) => row * columnCount(particles)) },
         }),
         cloth: (echinus, { particles }) =>
             garmentOf(echinus, sheetMesh(columnCount(particles), rowsOf(particles), [WIDTH, HEIGHT], (u, v) => [RADIUS + GAP + u * WIDTH, 0.05 * u * Math.sin(9 * u), LEVEL - v * HEIGHT])),

@@ -34,7 +34,7 @@ export function organ(): Act {
                 mesh: 'organ', element: size(particles), density: 1000, young_modulus: 1.4e4, poisson_ratio: 0.45, damping: 0.02,
                 position: [0, 0, BELOW], pins: { from: [-9, -9, -9], to: [9, 9, -0.17] },
             }],
-            material: { thickness: 0.018, drag: 0.01 },
+            material: { thickness: 0.018, air_drag: 2 },
         }),
         bodies(echinus) {
             const { vertices, faces } = organSurface();

@@ -10,9 +10,9 @@ const SIZE = 2.3;
 const BEGIN = 0.4, END = 3.4, RELEASE = 4.8;
 const LOW = -0.56, HIGH = 1.75;
 /** The hand holds what is so near the middle: enough to carry all of the kerchief, at this speed at most. */
-const GRIP = 0.16, FASTEST = 40;
+const GRIP = 0.25, FASTEST = 40;
 
-/** A kerchief is pulled through a ring by its middle, and falls back on it. */
+/** A kerchief is pulled through a ring by its middle, and falls back. */
 export function ring(): Act {
     const hand = new Hand();
     let held: Simulation | undefined;
@@ -26,7 +26,7 @@ export function ring(): Act {
             const columns = columnsOf(particles);
             return { cloth: { size: [SIZE, SIZE], particles: [columns, columns], position: [0, 0, LOW] } };
         },
-        steer(simulation, seconds) {
+        steer(simulation, seconds, timeStep) {
             if (seconds >= RELEASE) return;
             if (held !== simulation) {
                 held = simulation;
@@ -34,7 +34,7 @@ export function ring(): Act {
                 hand.grab(simulation, middle(positions), [0, 0, height(seconds)], GRIP);
             }
             hand.drag([0, 0, height(seconds)]);
-            hand.pull(simulation, 1 / 240, FASTEST);
+            hand.pull(simulation, timeStep, FASTEST);
         },
     };
 }

@@ -42,7 +42,7 @@ function aboveModel(settings: Settings, body: Body) {
     const position = [...centre] as Triple;
     position[AXES.indexOf(up)] = top + 0.08 * radius + thicknessOf(settings, body);
     const rotation = FROM_Z[up], columns = columnsOfSheet(settings);
-    return { position, ...(rotation && { rotation }), ...(settings.cloths === 1 ? sheetOf(columns, radius) : { mesh: 'sheets', bending: 'sticks' as const }) };
+    return { position, ...(rotation && { rotation }), ...(settings.cloths === 1 ? sheetOf(columns, radius) : { mesh: 'sheets' }) };
 }
 
 const sheetOf = (columns: number, radius: number) => ({ size: [SIZE * radius, SIZE * radius] as [number, number], particles: [columns, columns] as [number, number] });
@@ -59,7 +59,7 @@ export function layers(): Act {
         floor: -1.15,
         lasts: 0,
         thickness: ({ thickness, particles }) => (0.6 * thickness * LAYERS.size) / (columnsOfLayer(particles) - 1),
-        scene: (_, { top }) => ({ cloth: { mesh: 'layers', bending: 'sticks', position: [0, 0, top + 0.12] } }),
+        scene: (_, { top }) => ({ cloth: { mesh: 'layers', position: [0, 0, top + 0.12] } }),
         cloth: (echinus, { particles }) => garmentOf(echinus, stackOf({ ...LAYERS, columns: columnsOfLayer(particles) })),
     };
 }
