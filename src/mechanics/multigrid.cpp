@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <numeric>
 #include <utility>
 
@@ -45,8 +46,46 @@ Float4 times_range(const BlockMatrix& a, std::size_t row, std::size_t begin, std
            times_range(a.contacts, row, begin, end, x);
 }
 
+/// The trace of A B.
+float trace_of_product(const Block& a, const Block& b) {
+    float sum = 0;
+    for (std::size_t i = 0; i < 3; ++i)
+        for (std::size_t j = 0; j < 3; ++j) sum += a(i, j) * b(j, i);
+    return sum;
+}
+
+Block product(const Block& a, const Block& b) {
+    return {{a * b.columns[0], a * b.columns[1], a * b.columns[2]}};
+}
+
+/// The Frobenius norm of D_i^-1/2 A_ij D_j^-1/2, squared.
+float coupling_sq(const Block& inverse_i, const Block& a, const Block& inverse_j) {
+    // D_j^-1 A_ij^T, as D_j is symmetric.
+    Block transposed;
+    for (std::size_t i = 0; i < 3; ++i)
+        for (std::size_t j = 0; j < 3; ++j) transposed.columns[i].set(j, a(i, j));
+    return trace_of_product(product(inverse_i, a), product(inverse_j, transposed));
+}
+float coupling_sq(const Block& inverse_i, float multiple, const Block& inverse_j) {
+    return multiple * multiple * trace_of_product(inverse_i, inverse_j);
+}
+
+/// How strongly a row is coupled to columns outside of [begin, end), the sum over them.
+template <typename Value>
+float coupling_beyond(const BlockMatrix& a, const Rows<Value>& rows, std::size_t row, std::size_t begin,
+                      std::size_t end) {
+    float sum = 0;
+    for (std::uint32_t e = rows.first[row]; e < rows.first[row + 1]; ++e) {
+        const std::uint32_t column = rows.columns[e];
+        if (column >= begin && column < end) continue;
+        sum += std::sqrt(
+            std::max(coupling_sq(a.inverse_diagonal[row], rows.values[e], a.inverse_diagonal[column]), 0.0F));
+    }
+    return sum;
+}
+
 /// A sweep forwards from x = 0. The residual is left to the columns that a row has not seen: those behind it
-/// and those of other slabs.
+/// and those of other slabs; and to the excess of the diagonal.
 void sweep_from_zero(const BlockMatrix& a, std::span<const Float4> b, std::span<Float4> x,
                      const Workers& workers) {
     workers.for_ranges(
@@ -57,14 +96,16 @@ void sweep_from_zero(const BlockMatrix& a, std::span<const Float4> b, std::span<
 }
 
 /// b - A x after sweep_from_zero().
-void residual_of_sweep(const BlockMatrix& a, std::span<const Float4> x, std::span<Float4> residual,
-                       const Workers& workers) {
+void residual_of_sweep(const BlockMatrix& a, std::span<const float> excess, std::span<const Float4> x,
+                       std::span<Float4> residual, const Workers& workers) {
     workers.for_ranges(a.row_count(), kRowsPerSlab,
                        [&](std::size_t, std::size_t, std::size_t begin, std::size_t end) {
                            for (std::size_t row = begin; row < end; ++row) {
                                Float4 unseen = times_range(a, row, row + 1, a.row_count(), x);
                                if (begin > 0) unseen += times_range(a, row, 0, begin, x);
                                residual[row] = Float4{} - unseen;
+                               if (excess[row] > 0)
+                                   residual[row] += a.blocks.values[a.diagonal[row]] * (x[row] * excess[row]);
                            }
                        });
 }
@@ -235,15 +276,39 @@ void Multigrid::add_contacts(const BlockMatrix& fine, std::span<const std::uint8
     coarse.set_contacts(std::move(far));
 }
 
+/// With M = (1 + excess) D + L, of the slabs' lower triangles L, the sweeps converge where M + M^T - A is
+/// positive definite. A block beyond the slabs is bounded by its coupling c: 2 x_i A_ij x_j <= c (x_i D_i x_i
+/// + x_j D_j x_j); so half of the sum of a row's couplings is enough.
+void Multigrid::prepare(std::size_t level, BlockMatrix& matrix, const Workers& workers) {
+    matrix.invert_diagonal(workers);
+    std::vector<float>& excess = levels_[level].excess;
+    excess.resize(matrix.row_count());
+    const auto for_rows = [&](const auto& body) {
+        workers.for_ranges(matrix.row_count(), kRowsPerSlab,
+                           [&](std::size_t, std::size_t, std::size_t begin, std::size_t end) {
+                               for (std::size_t row = begin; row < end; ++row) body(row, begin, end);
+                           });
+    };
+    for_rows([&](std::size_t row, std::size_t begin, std::size_t end) {
+        excess[row] = (coupling_beyond(matrix, matrix.blocks, row, begin, end) +
+                       coupling_beyond(matrix, matrix.multiples, row, begin, end) +
+                       coupling_beyond(matrix, matrix.contacts, row, begin, end)) /
+                      2;
+    });
+    for_rows([&](std::size_t row, std::size_t, std::size_t) {
+        matrix.inverse_diagonal[row] = matrix.inverse_diagonal[row] * (1 / (1 + excess[row]));
+    });
+}
+
 void Multigrid::set(BlockMatrix& matrix, std::span<const std::uint8_t> is_held, const Workers& workers) {
     first_ = &matrix;
     is_held_ = is_held;
-    matrix.invert_diagonal(workers);
+    prepare(0, matrix, workers);
     for (std::size_t level = 0; level + 1 < levels_.size(); ++level) {
         BlockMatrix& coarse = levels_[level + 1].own;
         product(this->matrix(level), level == 0 ? is_held : std::span<const std::uint8_t>{},
                 levels_[level].transfer, coarse, workers);
-        coarse.invert_diagonal(workers);
+        prepare(level + 1, coarse, workers);
     }
     factorise_last();
 }
@@ -290,7 +355,7 @@ void Multigrid::cycle(std::size_t level, std::span<const Float4> b, std::span<Fl
     Level& here = levels_[level];
     if (level + 1 < levels_.size()) {
         const Transfer& transfer = here.transfer;
-        residual_of_sweep(a, x, here.residual, workers);
+        residual_of_sweep(a, here.excess, x, here.residual, workers);
         Level& next = levels_[level + 1];
         for (std::size_t node = 0; node < next.right_side.size(); ++node) {
             Float4 sum;

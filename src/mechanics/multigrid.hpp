@@ -14,7 +14,8 @@ namespace echinus {
 /// An approximate inverse of a BlockMatrix by Galerkin multigrid on any mesh: one V-cycle with a sweep of
 /// Gauss-Seidel forwards on the way down and one backwards on the way up, so that it is symmetric. Within
 /// slabs of rows a sweep uses what it has just found, and beyond them what was before: the slabs are fixed,
-/// and so the threads decide no bits.
+/// and so the threads decide no bits. The diagonal blocks of rows that are coupled beyond their slabs count
+/// for so much more that the inverse is positive definite, too, as that of l1 smoothers (Baker et al. 2011).
 class Multigrid {
   public:
     /// Finds the levels. @param places  [row] at rest
@@ -45,6 +46,7 @@ class Multigrid {
         BlockMatrix own;   ///< but on the first
         Transfer transfer; ///< to the next, but on the last
         std::vector<Float4> right_side, solution, residual, before;
+        std::vector<float> excess; ///< [row] share of the diagonal block by which it counts for more
     };
 
     void add_level(const BlockMatrix& fine, std::span<const Vec3d> places);
@@ -53,6 +55,7 @@ class Multigrid {
                         const Transfer& transfer, BlockMatrix& coarse, const Workers& workers);
     static void add_contacts(const BlockMatrix& fine, std::span<const std::uint8_t> is_held,
                              const Transfer& transfer, BlockMatrix& coarse);
+    void prepare(std::size_t level, BlockMatrix& matrix, const Workers& workers);
     void factorise_last();
     const BlockMatrix& matrix(std::size_t level) const { return level == 0 ? *first_ : levels_[level].own; }
     void cycle(std::size_t level, std::span<const Float4> b, std::span<Float4> x, const Workers& workers);
