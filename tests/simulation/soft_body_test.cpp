@@ -514,6 +514,28 @@ TEST(SoftBodyPhysics, SlidesDownASlopeOnlyBeyondTheAngleOfFrictionAndThenAsFastA
         EXPECT_NEAR(friction_of_sliding(degrees), kSlopeFriction, 0.0025) << degrees;
 }
 
+TEST(SoftBodyPhysics, RestsUnderOneThatIsFiveHundredTimesAsStiff) {
+    constexpr double kSoft = 2e4, kStiff = 1e7, kSide = 0.2, kWeight = 9.81 * 1000 * kSide * kSide * kSide;
+    const auto at = [](double height, double young) {
+        return cube(3, {.young_modulus = young, .damping = 0.02, .pose = {{}, {0, 0, height}}});
+    };
+    const std::vector<Deformable> parts{at(0.154, kSoft), at(0.358, kStiff)};
+    const Deformable stack = combine(parts);
+    Simulation simulation(stack, test::colliders_of({make_box({1, 1, 0.1})}), with_surfaces());
+    while (simulation.frame() < 300 && !simulation.at_rest()) simulation.step();
+    EXPECT_TRUE(simulation.at_rest());
+    std::array<double, 2> elastic{};
+    for (std::size_t t = 0; t < stack.tetrahedra.size(); ++t)
+        elastic[t < parts[0].tetrahedra.size() ? 0 : 1] +=
+            test::elastic_energy(stack.tetrahedra[t], simulation.positions());
+    EXPECT_LT(test::energy(simulation) - elastic[0] - elastic[1], 1e-5);
+    // Of a column that the weights above compress, 7/3 and 1/3 of that of one weight all along. Friction
+    // holds the soft one's ends, and pressure is not the same all over the stiff one's.
+    const double of_weight = kWeight * kWeight / (2 * kSide);
+    EXPECT_NEAR(elastic[0] / (7.0 / 3 * of_weight / kSoft), 0.75, 0.1);
+    EXPECT_NEAR(elastic[1] / (1.0 / 3 * of_weight / kStiff), 1.2, 0.3);
+}
+
 TEST(SoftBodyPhysics, GainsNoEnergyWhereABallCrushesIt) {
     // A jelly that would sink by half under its own weight falls as fast as waves go in it.
     const Deformable jelly =
