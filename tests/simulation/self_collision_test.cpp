@@ -89,9 +89,10 @@ Deformable pinned_net() {
 
 constexpr double kThin = 0.003;
 
-/// How far a deformable goes along x in so many seconds over a layer that is pinned.
-float slid_over(Deformable layer, Deformable slider, double speed, double seconds,
-                SimulationOptions options) {
+/// [frame] where the middle of a deformable is that slides along x over a layer that is pinned, beginning
+/// with its start.
+std::vector<float> slid_over(Deformable layer, Deformable slider, double speed, double seconds,
+                             SimulationOptions options) {
     options.air_drag = 0;
     options.thickness = options.self_thickness = kThin;
     options.surface_collision = options.self_collision = true;
@@ -107,19 +108,22 @@ float slid_over(Deformable layer, Deformable slider, double speed, double second
             sum += static_cast<double>(simulation.positions()[i].x);
         return static_cast<float>(sum / static_cast<double>(slider.particle_count()));
     };
-    const float before = middle();
-    while (simulation.frame() * options.time_step < seconds) simulation.step();
+    std::vector<float> middles{middle()};
+    while (simulation.frame() * options.time_step < seconds) {
+        simulation.step();
+        middles.push_back(middle());
+    }
     EXPECT_EQ(self_intersecting_pairs(surface_of(simulation.deformable())).size(), 0u);
-    return middle() - before;
+    return middles;
 }
 
-float sheet_slid_over_sheet(double speed, double friction, double seconds) {
+std::vector<float> sheet_slid_over_sheet(double speed, double friction, double seconds) {
     const Deformable layer = make_cloth(
         {.column_count = 61, .row_count = 13, .width = 3, .height = 0.6, .pose = {Rotation{}, {1.2, 0, 0}}});
     return slid_over(layer, sheet_at(1.05 * kThin, 0.2, 8), speed, seconds, {.friction = friction});
 }
 
-float block_slid_over_block(double speed, double friction, double seconds) {
+std::vector<float> block_slid_over_block(double speed, double friction, double seconds) {
     const Deformable layer =
         make_soft_body(make_solid_box({3, 0.4, 0.1}, {30, 4, 1}), {.pose = {Rotation{}, {1.2, 0, -0.05}}});
     const Deformable block = make_soft_body(
@@ -128,9 +132,15 @@ float block_slid_over_block(double speed, double friction, double seconds) {
     return slid_over(layer, block, speed, seconds, {.friction = friction});
 }
 
-/// Until friction alone has stopped it.
-float coulomb(double speed, double friction) {
-    return static_cast<float>(speed * speed / (2 * friction * 9.81));
+float distance_of(const std::vector<float>& middles) {
+    return middles.back() - middles.front();
+}
+
+/// By how much it is slower in the seventeenth frame than in the seventh, when it has landed, in metres a
+/// second.
+float slowed(const std::vector<float>& middles) {
+    const auto speed = [&](std::size_t frame) { return (middles[frame] - middles[frame - 1]) * 60; };
+    return speed(7) - speed(17);
 }
 
 /// Does it intersect itself where only contact with the model is looked for?
@@ -260,25 +270,23 @@ TEST(SelfCollision, OpensTheKnotOfASheetThatWasFoldedInFourTooSharply) {
 }
 
 TEST(SelfCollision, LetsASheetWithoutFrictionSlideOverAnother) {
-    GTEST_SKIP() << "faces of layers that slide over each other fast hold each other without friction";
     for (const double speed : {0.3, 2.0, 5.0}) {
         const auto way = static_cast<float>(0.5 * speed);
-        EXPECT_NEAR(sheet_slid_over_sheet(speed, 0, 0.5), way, 0.01F * way) << speed;
+        EXPECT_NEAR(distance_of(sheet_slid_over_sheet(speed, 0, 0.5)), way, 0.01F * way) << speed;
     }
 }
 
 TEST(SelfCollision, LetsASoftBodyWithoutFrictionSlideOverAnother) {
-    GTEST_SKIP() << "faces of layers that slide over each other fast hold each other without friction";
     for (const double speed : {0.3, 2.0}) {
         const auto way = static_cast<float>(0.5 * speed);
-        EXPECT_NEAR(block_slid_over_block(speed, 0, 0.5), way, 0.01F * way) << speed;
+        EXPECT_NEAR(distance_of(block_slid_over_block(speed, 0, 0.5)), way, 0.01F * way) << speed;
     }
 }
 
 TEST(SelfCollision, BrakesWhatSlidesOverALayerAsFrictionSays) {
-    GTEST_SKIP() << "faces of layers that slide over each other fast hold each other beyond friction";
-    EXPECT_NEAR(sheet_slid_over_sheet(1, 0.3, 0.5), coulomb(1, 0.3), 0.03F * coulomb(1, 0.3));
-    EXPECT_NEAR(block_slid_over_block(1, 0.3, 0.5), coulomb(1, 0.3), 0.05F * coulomb(1, 0.3));
+    const float coulomb = 0.3F * 9.81F * 10 / 60;
+    EXPECT_NEAR(slowed(sheet_slid_over_sheet(1, 0.3, 0.3)), coulomb, 0.03F * coulomb);
+    EXPECT_NEAR(slowed(block_slid_over_block(1, 0.3, 0.3)), coulomb, 0.05F * coulomb);
 }
 
 TEST(SelfCollision, LeavesTheFastFlightOfASheetAsItIs) {

@@ -1,5 +1,6 @@
 #include "simulation/contact/safe_displacements.hpp"
 
+#include "simulation/contact/passing_planes.hpp"
 #include "simulation/contact/thresholds.hpp"
 
 #include <algorithm>
@@ -28,7 +29,8 @@ Places SafeDisplacements::find(const Workers& workers) {
     unresolved_count_ = 0;
     for (std::size_t s = 0; s < sides_.size(); ++s)
         for (std::size_t p = 0; p < enough_[s].size(); ++p)
-            if (!(sides_[s].pairs.separations()[p].gap > 0) || closes(sides_[s], p, enough_[s][p]))
+            if (!(sides_[s].pairs.separations()[p].gap > 0) ||
+                (pushed(sides_[s], p) >= enough_[s][p] && plane_between(sides_[s], p).left() < 0))
                 ++unresolved_count_;
     return ends_;
 }
@@ -37,38 +39,63 @@ float SafeDisplacements::room_of(const ContactSide& side, float gap) const {
     return std::max(std::min(side.room(gap), share_ * gap), 0.0F);
 }
 
-/// Does a pair close farther than it may?
-/// @param enough  in: until the particles of the pair have been pushed so far in all, it does not. Out: the
-/// same from now on
-bool SafeDisplacements::closes(const ContactSide& side, std::size_t index, float& enough) const {
+/// The plane between the parts of a pair that hinders their displacements least: the one that they are
+/// farthest apart along, or one along which they pass each other.
+SafeDisplacements::Plane SafeDisplacements::plane_between(const ContactSide& side, std::size_t index) const {
     const Pair& pair = side.pairs.pairs()[index];
-    float pushed = 0;
-    for (std::size_t k = 0; k < side.pairs.moving_count(pair); ++k) pushed += pushed_[pair.points[k]];
-    if (pushed < enough) return false;
     const Separation& apart = side.pairs.separations()[index];
-    const float left = room_of(side, apart.gap) - side.closing_of(pair, apart.normal);
-    enough = pushed + left - side.least_gap / 4;
-    return left < 0;
+    const auto plane_along = [&](const Vec3f& normal, float gap) {
+        return Plane{normal, room_of(side, gap), side.closing_of(pair, normal)};
+    };
+    Plane best = plane_along(apart.normal, apart.gap);
+    if (best.left() >= 0 || !(apart.gap > 0)) return best;
+    const std::size_t own = own_count(pair.kind), moving = side.pairs.moving_count(pair);
+    PassingParts<float> parts{pair.kind, {}, apart.normal, {}};
+    for (std::size_t k = 0; k < 4; ++k) {
+        const std::uint32_t i = pair.points[k];
+        parts.points[k] = (k < moving ? side.safe : side.obstacle_from())[i];
+        if (k < moving)
+            parts.ahead += (side.base[i] - side.safe[i]) *
+                           (k < own ? 1 / static_cast<float>(own) : -1 / static_cast<float>(4 - own));
+    }
+    for (const Vec3f& normal : parts.normals()) {
+        const float gap = parts.gap_along(normal);
+        if (!(gap > side.least_gap)) continue;
+        const Plane plane = plane_along(normal, gap);
+        if (plane.left() > best.left()) best = plane;
+    }
+    return best;
 }
 
-/// @param enough  [pair] as of closes()
+/// How far its particles have been pushed, in all.
+float SafeDisplacements::pushed(const ContactSide& side, std::size_t index) const {
+    const Pair& pair = side.pairs.pairs()[index];
+    float sum = 0;
+    for (std::size_t k = 0; k < side.pairs.moving_count(pair); ++k) sum += pushed_[pair.points[k]];
+    return sum;
+}
+
+/// @param enough  [pair] while its particles have been pushed less far in all, it closes no farther than it
+/// may
 /// @return whether there were any to push apart
 bool SafeDisplacements::correct(ContactSide& side, std::vector<float>& enough) {
     bool is_any_pushed = false;
     enough.resize(side.pairs.pairs().size());
     for (std::size_t p = 0; p < enough.size(); ++p) {
-        if (!closes(side, p, enough[p])) continue;
-        const Separation& apart = side.pairs.separations()[p];
-        const float room = room_of(side, apart.gap);
-        is_any_pushed = push_apart(side, side.pairs.pairs()[p], apart.normal, room) || is_any_pushed;
+        const float so_far = pushed(side, p);
+        if (so_far < enough[p]) continue;
+        const Plane plane = plane_between(side, p);
+        enough[p] = so_far + plane.left() - side.least_gap / 4;
+        if (plane.left() < 0) is_any_pushed = push_apart(side, side.pairs.pairs()[p], plane) || is_any_pushed;
     }
     return is_any_pushed;
 }
 
-/// Moves the particles of a pair so that it closes a share of its room. Two parts share that displacement, as
-/// far as what is held in them lets them.
+/// Moves the particles of a pair so that it closes a share of the room along a plane's normal. Two parts
+/// share that displacement, as far as what is held in them lets them.
 /// @return whether any was moved; else those that are held close the pair
-bool SafeDisplacements::push_apart(ContactSide& side, const Pair& pair, const Vec3f& normal, float room) {
+bool SafeDisplacements::push_apart(ContactSide& side, const Pair& pair, const Plane& plane) {
+    const Vec3f& normal = plane.normal;
     const std::size_t own = own_count(pair.kind), moving = side.pairs.moving_count(pair);
     constexpr float kNone = -std::numeric_limits<float>::infinity();
     std::array<float, 4> closing{};
@@ -82,7 +109,7 @@ bool SafeDisplacements::push_apart(ContactSide& side, const Pair& pair, const Ve
         if (is_held_[i] != 0) held[part] = std::max(held[part], closing[k]);
     }
     if (moving < 4) most[1] = held[1] = side.obstacle_closing(pair, normal);
-    const float missing = most[0] + most[1] - room * threshold::kPushedTo + side.least_gap / 4;
+    const float missing = most[0] + most[1] - plane.room * threshold::kPushedTo + side.least_gap / 4;
     const std::array<float, 2> free{most[0] - held[0], most[1] - held[1]};
     const float first = std::min(std::max(missing / 2, missing - free[1]), free[0]);
     const std::array<float, 2> push{first, std::min(missing - first, free[1])};

@@ -32,10 +32,18 @@ class SafeDisplacements {
     std::size_t unresolved_count() const { return unresolved_count_; }
 
   private:
+    /// Between the parts of a pair: how far they may close along its normal, and how far they do.
+    struct Plane {
+        Vec3f normal;
+        float room, closing;
+        float left() const { return room - closing; }
+    };
+
     float room_of(const ContactSide& side, float gap) const;
-    bool closes(const ContactSide& side, std::size_t index, float& enough) const;
+    Plane plane_between(const ContactSide& side, std::size_t index) const;
+    float pushed(const ContactSide& side, std::size_t index) const;
     bool correct(ContactSide& side, std::vector<float>& enough);
-    bool push_apart(ContactSide& side, const Pair& pair, const Vec3f& normal, float room);
+    bool push_apart(ContactSide& side, const Pair& pair, const Plane& plane);
 
     std::span<ContactSide> sides_;
     Places goals_;
@@ -43,7 +51,7 @@ class SafeDisplacements {
     float share_;
     std::vector<Vec3d> ends_;
     std::vector<float> pushed_;              ///< [particle] how far in all
-    std::vector<std::vector<float>> enough_; ///< [side][pair] as of closes()
+    std::vector<std::vector<float>> enough_; ///< [side][pair] as of correct()
     std::size_t unresolved_count_ = 0;
     bool has_converged_ = false;
 };

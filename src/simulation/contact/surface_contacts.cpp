@@ -1,5 +1,6 @@
 #include "simulation/contact/surface_contacts.hpp"
 
+#include "simulation/contact/passing_planes.hpp"
 #include "simulation/contact/safe_displacements.hpp"
 #include "simulation/contact/thresholds.hpp"
 #include "simulation/surfaces/edge_lengths.hpp"
@@ -35,6 +36,22 @@ std::vector<std::uint8_t> without_faces(const std::vector<Collider>& colliders,
     for (const Collider& collider : colliders)
         result.push_back(options.surface_collision && map_of_surface(collider) != nullptr ? 0 : 1);
     return result;
+}
+
+/// The normal of a contact. Where its parts go farther than they are apart, they may pass each other.
+Vec3d normal_of(const PassingParts<double>& parts, double distance) {
+    const double closing = -dot(parts.normal, parts.ahead);
+    if (!(closing > 0) || !(dot(parts.ahead, parts.ahead) > distance * distance)) return parts.normal;
+    Vec3d best = parts.normal;
+    double most = distance - closing;
+    for (const Vec3d& normal : parts.normals()) {
+        const double gap = parts.gap_along(normal), left = gap + std::min(dot(normal, parts.ahead), 0.0);
+        if (gap > 0 && left > most) {
+            best = normal;
+            most = left;
+        }
+    }
+    return best;
 }
 
 } // namespace
@@ -322,28 +339,32 @@ void SurfaceContacts::add_contacts(const ContactSide& side, Places goals, bool i
         for (std::size_t k = 0; k < 4; ++k) across += points[k] * (k < own ? shares[k] : -shares[k]);
         const double distance = length(across);
         if (!(distance > 0)) continue;
+        Vec3d ahead;
+        for (std::size_t k = 0; k < moving; ++k)
+            ahead +=
+                (goals[pair.points[k]] - safe_places_[pair.points[k]]) * (k < own ? shares[k] : -shares[k]);
+        const Vec3d normal = normal_of({pair.kind, points, across * (1 / distance), ahead}, distance);
+        const double gap = dot(normal, across);
         ContactSet::Contact contact;
         contact.key = {side.number, pair.kind, pair.points};
-        contact.normal = across * (1 / distance);
-        contact.offset = distance;
+        contact.normal = normal;
+        contact.offset = gap;
         contact.thickness = thickness;
         contact.friction = double{side.friction};
         contact.particles.fill(pair.points[0]);
-        double closing = 0;
         for (std::size_t k = 0; k < moving; ++k) {
             const std::uint32_t i = pair.points[k];
             const double weight = k < own ? shares[k] : -shares[k];
             contact.particles[k] = i;
             contact.weights[k] = weight;
             contact.offset -= weight * dot(contact.normal, safe_places_[i]);
-            closing -= weight * dot(contact.normal, goals[i] - safe_places_[i]);
             if (is_held_[i] == 0) contact.mobility += weight * weight / masses_[i];
         }
-        if (!(distance - std::max(closing, 0.0) < double{threshold::kReady} * thickness) ||
+        if (!(gap + std::min(dot(normal, ahead), 0.0) < double{threshold::kReady} * thickness) ||
             !(contact.mobility > 0))
             continue;
         contacts_.add(contact, slip_start(side, pair, shares),
-                      is_solved ? std::optional(contacts_.push_of(contact, distance)) : std::nullopt);
+                      is_solved ? std::optional(contacts_.push_of(contact, gap)) : std::nullopt);
     }
 }
 
