@@ -8,7 +8,7 @@ const folder = inProject('web/pictures/');
 mkdirSync(`${folder}gallery`, { recursive: true });
 
 /** Each moment in time steps. */
-const MOMENTS = { horse: 83, torus: 83, figure: 230, organ: 75, ring: 190, flag: 105, layers: 75, beside: 83 };
+const MOMENTS = { horse: 83, torus: 83, figure: 230, organ: 75, ring: 190, flag: 80, layers: 75, beside: 83 };
 
 const browser = await startBrowser();
 
