@@ -42,14 +42,21 @@ NewtonSolver::NewtonSolver(Deformable deformable_in, std::vector<Collider> colli
     : Solver(std::move(deformable_in), std::move(colliders_in), options_in),
       step_(elastic_parts(deformable, options.material)), motion_(deformable.particle_count()),
       is_held_(deformable.particle_count()), accelerations_(deformable.particle_count(), options.gravity),
-      gained_(deformable.particle_count()), deformations_(colliders.size()),
-      mean_edge_(mean_edge_of(deformable)), thickness_(*contact_options(options, mean_edge_).thickness) {
+      gained_(deformable.particle_count()), deformations_(colliders.size()), is_near_(colliders.size()),
+      meets_some_(colliders.size(), 1), mean_edge_(mean_edge_of(deformable)),
+      thickness_(*contact_options(options, mean_edge_).thickness) {
     for (std::size_t i = 0; i < deformable.particle_count(); ++i) {
         motion_.places[i] = Vec3d(deformable.positions[i]);
         motion_.velocities[i] =
             (motion_.places[i] - Vec3d(deformable.previous_positions[i])) * (1 / options.time_step);
         is_held_[i] = deformable.inverse_masses[i] == 0 ? 1 : 0;
         if (is_held_[i] != 0) motion_.velocities[i] = {};
+    }
+    for (std::size_t c = 0; c < colliders.size(); ++c) {
+        const std::vector<std::uint8_t> passes = let_through(deformable, c);
+        const bool all_pass =
+            std::all_of(passes.begin(), passes.end(), [](std::uint8_t p) { return p != 0; });
+        if (!passes.empty() && all_pass) meets_some_[c] = 0;
     }
     if (options.surface_collision || !colliders.empty())
         contacts_.emplace(deformable, colliders, step_.masses(), contact_options(options, mean_edge_));
@@ -105,14 +112,20 @@ void NewtonSolver::deform() {
 /// So that what is carried along keeps its gaps, and that impacts are solved where they happen.
 std::uint32_t NewtonSolver::part_count() {
     if (!options.surface_collision) return 1;
+    const PointArrays now = places_now();
+    const double room = threshold::kDecidingRoom * fastest() * options.time_step;
     double longest = 0;
     for (std::size_t c = 0; c < colliders.size(); ++c) {
         Collider after = colliders[c];
         after.pose = pose_after(colliders[c], options.time_step);
-        longest = std::max(longest,
-                           CarryField::longest_displacement(colliders[c], after) + deformations_[c].longest);
+        is_near_[c] =
+            meets_some_[c] != 0 && CarryField::may_carry(colliders[c], after, now, motion_.particle_count(),
+                                                         room, threshold::kTouch * thickness_)
+                ? 1
+                : 0;
+        const double rigid = is_near_[c] != 0 ? CarryField::longest_displacement(colliders[c], after) : 0;
+        longest = std::max(longest, rigid + deformations_[c].longest);
     }
-    const PointArrays now = places_now();
     const double overlap =
         contacts_->overlap_ahead(colliders, now, guess(motion_.places, options.time_step), workers_);
     const double parts = std::ceil(std::max(longest / (threshold::kMostCarried * thickness_),
@@ -171,7 +184,7 @@ std::optional<PointArrays> NewtonSolver::carried_start(const std::vector<Collide
     attachments_.follow(colliders, deforming_, part.end, start);
     if (!contacts_ || !options.surface_collision) return start;
     const Stopwatch stopwatch(profile.collision_seconds);
-    const CarryField field(before, colliders, deformations_, part, threshold::kTouch * thickness_);
+    const CarryField field(before, colliders, is_near_, deformations_, part, threshold::kTouch * thickness_);
     if (field.is_zero()) return start;
     field.carry(start, is_held_, workers_);
     const bool is_carried =

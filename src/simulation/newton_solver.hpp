@@ -43,6 +43,8 @@ class NewtonSolver : public Solver {
     std::vector<Vec3d> gained_; ///< [particle] the acceleration of the last step: what contacts left of
                                 ///< gravity, for the guess of the next
     std::vector<Deformation> deformations_; ///< by collider, in this frame
+    std::vector<std::uint8_t> is_near_;     ///< [collider] 1 for those that may carry anything in this frame
+    std::vector<std::uint8_t> meets_some_;  ///< [collider] 0 for those that let all particles through
     std::optional<SurfaceContacts> contacts_;
     double mean_edge_; ///< of the surface
     double thickness_; ///< in force: positive

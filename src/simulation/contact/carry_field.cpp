@@ -90,10 +90,25 @@ double CarryField::longest_displacement(const Collider& before, const Collider& 
            2 * sine * largest * double{view.radius};
 }
 
+bool CarryField::may_carry(const Collider& before, const Collider& after, const PointArrays& points,
+                           std::size_t point_count, double room, double touch) {
+    const double longest = longest_displacement(before, after);
+    if (longest == 0) return false;
+    const ExactMapView view = map_of_surface(before)->view();
+    const Vec3d scale = before.scale;
+    const double largest = std::max({std::abs(scale.x), std::abs(scale.y), std::abs(scale.z)});
+    return BoxOfPoints(points, point_count)
+               .distance(before.pose.to_world(times(Vec3d(view.centre), scale))) <=
+           largest * double{view.radius} + longest * (1 + threshold::kFade) + touch + room;
+}
+
 CarryField::CarryField(const std::vector<Collider>& before, const std::vector<Collider>& after,
-                       std::span<const Deformation> deformations, const FramePart& part, double touch)
-    : before_(before), after_(after), deformations_(deformations), part_(part), touch_(touch), reach_(touch) {
+                       std::span<const std::uint8_t> is_near, std::span<const Deformation> deformations,
+                       const FramePart& part, double touch)
+    : before_(before), after_(after), is_near_(is_near), deformations_(deformations), part_(part),
+      touch_(touch), reach_(touch) {
     for (std::size_t c = 0; c < before.size(); ++c) {
+        if (is_near[c] == 0 && deformations[c].motion == nullptr) continue;
         const double longest = longest_displacement(before[c], after[c]) +
                                deformations[c].longest * double{part.end - part.begin};
         moves_ = moves_ || longest > 0 || deformations[c].motion != nullptr;
@@ -147,7 +162,7 @@ void CarryField::carry(PointArrays& points, std::span<const std::uint8_t> is_hel
     const auto carry_point = [&](std::size_t i) {
         if (is_held[i] != 0) return;
         for (std::size_t c = 0; c < before_.size(); ++c)
-            if (deformations_[c].motion == nullptr) add_rigid(c, points[i], blends[i]);
+            if (is_near_[c] != 0 && deformations_[c].motion == nullptr) add_rigid(c, points[i], blends[i]);
         points.set(i, Vec3f(Vec3d(points[i]) + displacement_of(blends[i])));
     };
     workers.for_ranges(is_held.size(), kPointsPerPiece,

@@ -45,14 +45,20 @@ struct FramePart {
 class CarryField {
   public:
     /// @param before, after  the colliders when a step begins and when it ends
+    /// @param is_near        [collider] 1 for those that may carry anything, as may_carry() says
     /// @param deformations   [collider] in the frame of which the step is a part
     /// @param touch  what is no farther from a collider is carried whole
     CarryField(const std::vector<Collider>& before, const std::vector<Collider>& after,
-               std::span<const Deformation> deformations, const FramePart& part, double touch);
+               std::span<const std::uint8_t> is_near, std::span<const Deformation> deformations,
+               const FramePart& part, double touch);
 
     bool is_zero() const { return !moves_; }
     /// The longest displacement of any collider's material by its pose.
     static double longest_displacement(const Collider& before, const Collider& after);
+    /// Could a collider whose surface does not deform carry any of these points, which go no farther than
+    /// `room` meanwhile?
+    static bool may_carry(const Collider& before, const Collider& after, const PointArrays& points,
+                          std::size_t point_count, double room, double touch);
 
     /// Moves points, but those that are held.
     void carry(PointArrays& points, std::span<const std::uint8_t> is_held, const Workers& workers) const;
@@ -66,6 +72,7 @@ class CarryField {
 
     const std::vector<Collider>& before_;
     const std::vector<Collider>& after_;
+    std::span<const std::uint8_t> is_near_;
     std::span<const Deformation> deformations_;
     FramePart part_;
     double touch_, reach_;
