@@ -196,7 +196,7 @@ struct SimulationOptions {
     ClothMaterial material{}; ///< Newton
     /// Newton: at most so many steps of Newton's method in each frame, or part of one; fewer where it has
     /// converged. Fewer than two leave contacts unresolved.
-    std::uint32_t newton_step_count = 4;
+    std::uint32_t newton_step_count = 8;
     /// Newton: a step of Newton's method that moves no particle farther than this has converged; share of the
     /// mean edge length.
     double newton_tolerance = 1e-4;

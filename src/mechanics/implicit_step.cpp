@@ -1,5 +1,7 @@
 #include "mechanics/implicit_step.hpp"
 
+#include "geometry/union_find.hpp"
+
 #include <algorithm>
 #include <cmath>
 
@@ -19,6 +21,17 @@ constexpr double kEnergyRounding = 1e-11;
 /// Of BDF2: v = (x - from) / (2 h / 3) with from = (4 x0 - x00) / 3, and the same of the velocity.
 constexpr double kSecondOrderStep = 2.0 / 3;
 
+/// [row] the first row that the pattern connects with it.
+std::vector<std::uint32_t> bodies_of(const BlockMatrix& pattern) {
+    UnionFind bodies(pattern.blocks.row_count());
+    for (std::uint32_t row = 0; row < pattern.blocks.row_count(); ++row)
+        for (std::uint32_t e = pattern.blocks.first[row]; e < pattern.blocks.first[row + 1]; ++e)
+            bodies.join(row, pattern.blocks.columns[e]);
+    std::vector<std::uint32_t> result(pattern.blocks.row_count());
+    for (std::uint32_t row = 0; row < result.size(); ++row) result[row] = bodies.find(row);
+    return result;
+}
+
 } // namespace
 
 ImplicitStep::ImplicitStep(const ElasticParts& parts)
@@ -27,6 +40,14 @@ ImplicitStep::ImplicitStep(const ElasticParts& parts)
       gradient_(masses_.size()), trial_(masses_.size()), right_side_(masses_.size()),
       direction_(masses_.size()) {
     elastic_.find_entries(hessian_);
+    bodies_ = bodies_of(hessian_);
+}
+
+void ImplicitStep::spread(std::span<std::uint8_t> marks) const {
+    // The first of a body has the smallest number.
+    for (std::size_t i = 0; i < marks.size(); ++i)
+        if (marks[i] != 0) marks[bodies_[i]] = 1;
+    for (std::size_t i = 0; i < marks.size(); ++i) marks[i] = marks[bodies_[i]];
 }
 
 void ImplicitStep::begin(const Motion& motion, std::span<const Vec3d> accelerations,
@@ -69,8 +90,17 @@ void ImplicitStep::add_derivatives(Places places, const ContactEnergy* contacts,
         hessian_.blocks.values[hessian_.diagonal[i]].add_identity(static_cast<float>(inertia_[i]));
     }
     elastic_.add_derivatives(places, gradient_, &hessian_, workers);
-    if (contacts != nullptr) contacts->add_derivatives(places, gradient_, hessian_, workers);
+    if (contacts != nullptr) contacts->add_derivatives(places, gradient_, &hessian_, workers);
     hold(workers);
+}
+
+std::vector<Vec3d> ImplicitStep::missing_forces(Places places, const ContactEnergy* contacts,
+                                                const Workers& workers) const {
+    std::vector<Vec3d> forces(masses_.size());
+    for (std::size_t i = 0; i < masses_.size(); ++i) forces[i] = (places[i] - inertial_[i]) * inertia_[i];
+    elastic_.add_derivatives(places, forces, nullptr, workers);
+    if (contacts != nullptr) contacts->add_derivatives(places, forces, nullptr, workers);
+    return forces;
 }
 
 /// Takes the particles that are held out of the system: their rows and columns are those of a multiple of the

@@ -30,8 +30,8 @@ class ContactEnergy {
     virtual ~ContactEnergy() = default;
     virtual double energy(Places places, const Workers& workers) const = 0;
     /// The gradient, and a positive semi-definite Hessian: added to the diagonal blocks of the matrix, to
-    /// others of its pattern, and to its contacts.
-    virtual void add_derivatives(Places places, std::span<Vec3d> gradient, BlockMatrix& hessian,
+    /// others of its pattern, and to its contacts; null: the gradient alone.
+    virtual void add_derivatives(Places places, std::span<Vec3d> gradient, BlockMatrix* hessian,
                                  const Workers& workers) const = 0;
 };
 
@@ -60,6 +60,10 @@ class ImplicitStep {
   public:
     explicit ImplicitStep(const ElasticParts& parts);
 
+    /// Spreads marks over bodies: to all particles that the material connects with one that has it. The step
+    /// is to be of the same order for all of those, or what they do to each other would not balance.
+    /// @param marks  [particle] 0 or 1
+    void spread(std::span<std::uint8_t> marks) const;
     /// Where inertia leads: begins a step. @param accelerations  [particle] by outer forces
     /// @param is_held  [particle] 1 for those that do not follow forces, but goals
     /// @param drag     the rate at which a velocity decays, 1/s
@@ -75,6 +79,10 @@ class ImplicitStep {
                      const Workers& workers);
 
     double energy(Places places, const ContactEnergy* contacts, const Workers& workers) const;
+    /// The forces that are missing for equilibrium at these places: those by which particles are stopped or
+    /// held, and what the solver has left.
+    std::vector<Vec3d> missing_forces(Places places, const ContactEnergy* contacts,
+                                      const Workers& workers) const;
     /// The elastic part alone, without dissipation in progress.
     const ElasticModel& elastic() const { return elastic_; }
     std::span<const double> masses() const { return masses_; }
@@ -87,6 +95,7 @@ class ImplicitStep {
                   StepReport& report, const Workers& workers);
 
     std::vector<double> masses_;
+    std::vector<std::uint32_t> bodies_; ///< [particle] the first one of its body
     ElasticModel elastic_;
     BlockMatrix hessian_;
     Multigrid multigrid_;

@@ -43,10 +43,25 @@ void Bounds::require_sound() const {
     if (!diverged_.empty()) throw Error(ErrorCode::Diverged, diverged_);
 }
 
+template <typename Points>
+void Bounds::require_within(const Points& points, std::size_t count, double most, std::uint32_t frame) {
+    for (std::size_t i = 0; i < count; ++i)
+        if (!is_within(Vec3d(points[i]) - centre_, most))
+            diverge(frame, "particle " + std::to_string(i) +
+                               " left all bounds; try a smaller time step or stiffness");
+}
+
+double Bounds::most_on_the_way() const {
+    return std::min(kLongestWay, kFartherOnTheWay * farthest_);
+}
+
 void Bounds::require_ways(const Particles& particles, std::uint32_t frame) {
-    const double most = std::min(kLongestWay, kFartherOnTheWay * farthest_);
-    require_within(particles.positions, particles.count(), most, frame);
-    require_within(particles.previous, particles.count(), most, frame);
+    require_within(particles.positions, particles.count(), most_on_the_way(), frame);
+    require_within(particles.previous, particles.count(), most_on_the_way(), frame);
+}
+
+void Bounds::require_ways(std::span<const Vec3d> ends, std::uint32_t frame) {
+    require_within(ends, ends.size(), most_on_the_way(), frame);
 }
 
 bool Bounds::contain_way(const Collider& collider, double seconds) {
@@ -57,13 +72,6 @@ bool Bounds::contain_way(const Collider& collider, double seconds) {
 
 void Bounds::require_ends(const PointArrays& positions, std::size_t count, std::uint32_t frame) {
     require_within(positions, count, farthest_, frame);
-}
-
-void Bounds::require_within(const PointArrays& points, std::size_t count, double most, std::uint32_t frame) {
-    for (std::size_t i = 0; i < count; ++i)
-        if (!is_within(Vec3d(points[i]) - centre_, most))
-            diverge(frame, "particle " + std::to_string(i) +
-                               " left all bounds; try a smaller time step or stiffness");
 }
 
 void Bounds::diverge(std::uint32_t frame, const std::string& what) {

@@ -23,6 +23,8 @@ class Bounds {
     /// In the middle of a frame, in which what would be far out may be stopped on its way; but not from a
     /// hundred times as far.
     void require_ways(const Particles& particles, std::uint32_t frame);
+    /// The same of the ends to which their motion leads. @param ends  [particle]
+    void require_ways(std::span<const Vec3d> ends, std::uint32_t frame);
     void require_ends(const Particles& particles, std::uint32_t frame) {
         require_ends(particles.positions, particles.count(), frame);
     }
@@ -33,7 +35,9 @@ class Bounds {
     static bool contain_way(const Collider& collider, double seconds);
 
   private:
-    void require_within(const PointArrays& points, std::size_t count, double most, std::uint32_t frame);
+    double most_on_the_way() const;
+    template <typename Points>
+    void require_within(const Points& points, std::size_t count, double most, std::uint32_t frame);
 
     Vec3d centre_;    ///< of where the deformable began
     double farthest_; ///< that a particle may be from there when a frame ends

@@ -43,6 +43,7 @@ NewtonSolver::NewtonSolver(Deformable deformable_in, std::vector<Collider> colli
       step_(elastic_parts(deformable, options.material)), motion_(deformable.particle_count()),
       is_held_(deformable.particle_count()), accelerations_(deformable.particle_count(), options.gravity),
       gained_(deformable.particle_count()), deformations_(colliders.size()), is_near_(colliders.size()),
+      may_touch_(deformable.particle_count()), held_by_(deformable.particle_count(), kNoObstacle),
       meets_some_(colliders.size(), 1), mean_edge_(mean_edge_of(deformable)),
       thickness_(*contact_options(options, mean_edge_).thickness) {
     for (std::size_t i = 0; i < deformable.particle_count(); ++i) {
@@ -52,6 +53,8 @@ NewtonSolver::NewtonSolver(Deformable deformable_in, std::vector<Collider> colli
         is_held_[i] = deformable.inverse_masses[i] == 0 ? 1 : 0;
         if (is_held_[i] != 0) motion_.velocities[i] = {};
     }
+    for (const Attachment& attachment : deformable.attachments)
+        held_by_[attachment.particle] = attachment.collider;
     for (std::size_t c = 0; c < colliders.size(); ++c) {
         const std::vector<std::uint8_t> passes = let_through(deformable, c);
         const bool all_pass =
@@ -75,6 +78,7 @@ void NewtonSolver::step() {
     if (contacts_) contacts_->begin_frame();
     float share = 1 / static_cast<float>(part_count());
     for (FramePart part{0, 0}; part.begin < 1;) {
+        require_ways();
         part.end = part.begin + share < 1 - share / 2 ? part.begin + share : 1;
         if (step_part(part))
             part.begin = part.end;
@@ -91,6 +95,14 @@ void NewtonSolver::step() {
     publish();
     ++frame;
     rest_.watch(deformable.positions, largest_speed);
+}
+
+/// Where nothing stops it, no particle leaves all bounds in the frame.
+void NewtonSolver::require_ways() {
+    std::vector<Vec3d> ends = motion_.places;
+    for (std::size_t i = 0; i < ends.size(); ++i)
+        ends[i] += (motion_.velocities[i] + accelerations_[i] * options.time_step) * options.time_step;
+    bounds_.require_ways(ends, frame);
 }
 
 /// Colliders that deform get the maps of the frame's end.
@@ -118,16 +130,19 @@ std::uint32_t NewtonSolver::part_count() {
     for (std::size_t c = 0; c < colliders.size(); ++c) {
         Collider after = colliders[c];
         after.pose = pose_after(colliders[c], options.time_step);
-        is_near_[c] =
-            meets_some_[c] != 0 && CarryField::may_carry(colliders[c], after, now, motion_.particle_count(),
-                                                         room, threshold::kTouch * thickness_)
-                ? 1
-                : 0;
+        const bool holds =
+            std::any_of(deformable.attachments.begin(), deformable.attachments.end(),
+                        [&](const Attachment& attachment) { return attachment.collider == c; });
+        is_near_[c] = holds || (meets_some_[c] != 0 &&
+                                CarryField::may_carry(colliders[c], after, now, motion_.particle_count(),
+                                                      room, threshold::kTouch * thickness_))
+                          ? 1
+                          : 0;
         const double rigid = is_near_[c] != 0 ? CarryField::longest_displacement(colliders[c], after) : 0;
         longest = std::max(longest, rigid + deformations_[c].longest);
     }
-    const double overlap =
-        contacts_->overlap_ahead(colliders, now, guess(motion_.places, options.time_step), workers_);
+    const double overlap = contacts_->overlap_ahead(colliders, now, guess(motion_.places, options.time_step),
+                                                    may_touch_, workers_);
     const double parts = std::ceil(std::max(longest / (threshold::kMostCarried * thickness_),
                                             overlap / (threshold::kMostOverlap * mean_edge_)));
     return static_cast<std::uint32_t>(std::clamp(parts, 1.0, double{threshold::kMostPartsOfFrame}));
@@ -150,6 +165,7 @@ bool NewtonSolver::step_part(const FramePart& part) {
     if (contacts_) contacts_->particles().begin_step(before, colliders, motion_.places, is_held_);
     const std::vector<Vec3d> from = exact(start);
     std::vector<Vec3d> places = guess(from, seconds);
+    choose_orders(share < 1);
     step_.begin(motion_, accelerations_, is_held_, seconds, options.air_drag);
     step_.calm(from, places, workers_);
     // In a part of a frame inertia has more of a say, and fewer steps lead as far.
@@ -166,6 +182,19 @@ bool NewtonSolver::step_part(const FramePart& part) {
         if (is_held_[i] != 0) motion_.is_smooth[i] = 0;
     }
     return true;
+}
+
+/// Where a body touches something, or may do so, its steps are of first order: an impact is not smooth. So
+/// are steps of another length than that before.
+void NewtonSolver::choose_orders(bool is_part) {
+    if (is_part || was_part_) std::fill(motion_.is_smooth.begin(), motion_.is_smooth.end(), std::uint8_t{0});
+    was_part_ = is_part ? 1 : 0;
+    std::vector<std::uint8_t> is_rough = may_touch_;
+    for (std::size_t i = 0; i < is_rough.size(); ++i)
+        if (motion_.is_smooth[i] == 0 && is_held_[i] == 0) is_rough[i] = 1;
+    step_.spread(is_rough);
+    for (std::size_t i = 0; i < is_rough.size(); ++i)
+        if (is_rough[i] != 0) motion_.is_smooth[i] = 0;
 }
 
 PointArrays NewtonSolver::places_now() const {
@@ -246,6 +275,9 @@ void NewtonSolver::minimise(std::vector<Vec3d>& places, const PointArrays& start
     contact([&] {
         contacts_->put_outside(places, energy, workers_);
         contacts_->end_step(places);
+        if (contacts_->stops() || !deformable.attachments.empty())
+            contacts_->add_loads(places, step_.missing_forces(places, &contacts_->energy(), workers_),
+                                 held_by_);
     });
     profile.contact_count += contacts_->pushing_count(places);
     profile.measured_pair_count += contacts_->pair_count();
@@ -312,6 +344,7 @@ void NewtonSolver::archive(StateArchive& state) {
                                         &motion_.velocities_before, &accelerations_, &gained_})
         state.array(*vectors);
     state.array(motion_.is_smooth);
+    state.value(was_part_);
     rest_.archive(state);
     archive_colliders(state);
     attachments_.archive(state, deforming_);

@@ -23,11 +23,13 @@ class NewtonSolver : public Solver {
     void archive(StateArchive& state) override;
 
   private:
+    void require_ways();
     void deform();
     std::uint32_t part_count();
     bool step_part(const FramePart& part);
     PointArrays places_now() const;
     double fastest() const;
+    void choose_orders(bool is_part);
     std::optional<PointArrays> carried_start(const std::vector<Collider>& before, const FramePart& part,
                                              bool is_least);
     std::vector<Vec3d> exact(const PointArrays& start) const;
@@ -43,8 +45,12 @@ class NewtonSolver : public Solver {
     std::vector<Vec3d> gained_; ///< [particle] the acceleration of the last step: what contacts left of
                                 ///< gravity, for the guess of the next
     std::vector<Deformation> deformations_; ///< by collider, in this frame
-    std::vector<std::uint8_t> is_near_;     ///< [collider] 1 for those that may carry anything in this frame
-    std::vector<std::uint8_t> meets_some_;  ///< [collider] 0 for those that let all particles through
+    std::vector<std::uint8_t>
+        is_near_; ///< [collider] 1 for those that may carry anything in this frame, or hold it
+    std::vector<std::uint8_t> may_touch_;  ///< [particle] 1 for those that may do so in this frame
+    std::uint8_t was_part_ = 0;            ///< of a frame, the last step
+    std::vector<std::uint32_t> held_by_;   ///< [particle] the collider that it is attached to, or kNoObstacle
+    std::vector<std::uint8_t> meets_some_; ///< [collider] 0 for those that let all particles through
     std::optional<SurfaceContacts> contacts_;
     double mean_edge_; ///< of the surface
     double thickness_; ///< in force: positive

@@ -179,7 +179,7 @@ TEST(SurfaceCollision, LeavesASheetOverAThinPostLittleStretched) {
                                       .height = 1.2,
                                       .pose = {{}, {0.02, 0.01, 0.52}}}),
                           colliders_of({make_box({0.04, 0.04, 1})}), kSurfaces);
-    for (int frame = 0; frame < 30; ++frame) simulation.step();
+    for (int frame = 0; frame < 40; ++frame) simulation.step();
     const Deformable& sheet = simulation.deformable();
     double largest = 0;
     for (const Stick& stick : sheet.sticks)

@@ -634,7 +634,7 @@ export interface SceneDescription {
     iterations?: number;
     /**
      * `newton` only: at most so many steps of Newton's method in a frame; fewer where it has converged (1 to 1000).
-     * Default: 4.
+     * Default: 8.
      */
     newton_steps?: number;
     /**

@@ -45,7 +45,8 @@ struct FramePart {
 class CarryField {
   public:
     /// @param before, after  the colliders when a step begins and when it ends
-    /// @param is_near        [collider] 1 for those that may carry anything, as may_carry() says
+    /// @param is_near        [collider] 1 for those that may carry anything, as may_carry() says, or hold
+    /// particles
     /// @param deformations   [collider] in the frame of which the step is a part
     /// @param touch  what is no farther from a collider is carried whole
     CarryField(const std::vector<Collider>& before, const std::vector<Collider>& after,

@@ -151,7 +151,7 @@ double ContactSet::energy(Places places, const Workers& workers) const {
     });
 }
 
-void ContactSet::add_derivatives(Places places, std::span<Vec3d> gradient, BlockMatrix& hessian,
+void ContactSet::add_derivatives(Places places, std::span<Vec3d> gradient, BlockMatrix* hessian,
                                  const Workers&) const {
     std::vector<BlockMatrix::ContactEntry> far;
     for (const Held& contact : contacts_) {
@@ -180,19 +180,20 @@ void ContactSet::add_derivatives(Places places, std::span<Vec3d> gradient, Block
             if (contact.weights[k] == 0) continue;
             const std::uint32_t i = contact.particles[k];
             gradient[i] += force * contact.weights[k];
+            if (hessian == nullptr) continue;
             for (std::size_t l = 0; l < 4; ++l) {
                 const double weight = contact.weights[k] * contact.weights[l];
                 if (weight == 0) continue;
                 const std::uint32_t j = contact.particles[l];
-                const std::uint32_t entry = i == j ? hessian.diagonal[i] : hessian.find_block(i, j);
+                const std::uint32_t entry = i == j ? hessian->diagonal[i] : hessian->find_block(i, j);
                 if (entry != BlockMatrix::kNone)
-                    hessian.blocks.values[entry].add_scaled(block, static_cast<float>(weight));
+                    hessian->blocks.values[entry].add_scaled(block, static_cast<float>(weight));
                 else
                     far.push_back({{i, j}, block * static_cast<float>(weight)});
             }
         }
     }
-    hessian.set_contacts(std::move(far));
+    if (hessian != nullptr) hessian->set_contacts(std::move(far));
 }
 
 std::size_t ContactSet::pushing_count(Places places) const {
@@ -213,8 +214,8 @@ void ContactSet::end_step(Places places, std::span<const std::optional<FrameChan
         const std::uint32_t obstacle = contact.key.obstacle;
         const auto& frame = frames[obstacle];
         if (obstacle < impulses_.size())
-            note_load(contact, places, slip * contact.stiffness - contact.normal * push,
-                      frame ? frame->point_to_world<double>({}) : Vec3d{});
+            add_load(obstacle, point_of(contact, places), contact.normal * push - slip * contact.stiffness,
+                     frame);
         if (!(push > 0)) continue;
         Bristle bristle{
             contact.key, {}, turned_to_local(frame, contact.normal), turned_to_local(frame, slip), push};
@@ -252,14 +253,18 @@ ContactSet::Patch& ContactSet::patch_at(std::uint32_t particle, std::uint32_t ob
     return patches_.back();
 }
 
-/// @param force  on the collider
-/// @param pivot  about which the moment is
-void ContactSet::note_load(const Held& contact, Places places, const Vec3d& force, const Vec3d& pivot) {
+/// Where the deformable touches.
+Vec3d ContactSet::point_of(const Held& contact, Places places) const {
     Vec3d point;
     for (std::size_t k = 0; k < 4; ++k) point += places[contact.particles[k]] * contact.weights[k];
-    Impulse& impulse = impulses_[contact.key.obstacle];
-    impulse.linear += force * step_;
-    impulse.angular += cross(point - pivot, force) * step_;
+    return point;
+}
+
+void ContactSet::add_load(std::uint32_t collider, const Vec3d& place, const Vec3d& force,
+                          const std::optional<FrameChange>& frame) {
+    const Vec3d pivot = frame ? frame->point_to_world<double>({}) : Vec3d{};
+    impulses_[collider].linear -= force * step_;
+    impulses_[collider].angular -= cross(place - pivot, force) * step_;
 }
 
 void ContactSet::archive(StateArchive& state) {

@@ -16,6 +16,9 @@
 
 namespace echinus {
 
+/// In place of the number of an obstacle.
+inline constexpr std::uint32_t kNoObstacle = 0xFFFFFFFF;
+
 /// The parts that touch: a pair of a deformable and an obstacle, by its number.
 struct ContactKey {
     std::uint32_t obstacle;
@@ -62,8 +65,13 @@ class ContactSet : public ContactEnergy {
     void end_step(Places places, std::span<const std::optional<FrameChange>> frames,
                   std::span<std::uint8_t> is_touching);
 
+    /// Adds the load of a particle that is stopped by a collider, or held by it.
+    /// @param force  on the particle
+    void add_load(std::uint32_t collider, const Vec3d& place, const Vec3d& force,
+                  const std::optional<FrameChange>& frame);
+
     double energy(Places places, const Workers& workers) const override;
-    void add_derivatives(Places places, std::span<Vec3d> gradient, BlockMatrix& hessian,
+    void add_derivatives(Places places, std::span<Vec3d> gradient, BlockMatrix* hessian,
                          const Workers& workers) const override;
 
     /// Contacts that push at these places.
@@ -105,7 +113,7 @@ class ContactSet : public ContactEnergy {
     double gap_of(const Held& contact, Places places) const;
     Vec3d slip_of(const Held& contact, Places places) const;
     Vec3d held_slip(const Held& contact, Places places) const;
-    void note_load(const Held& contact, Places places, const Vec3d& force, const Vec3d& pivot);
+    Vec3d point_of(const Held& contact, Places places) const;
 
     double gravity_, step_ = 0;
     std::size_t obstacle_count_;

@@ -166,11 +166,15 @@ float ContactSide::closing_of(const Pair& pair, const Vec3f& normal) const {
     return most[0] + (moving == 4 ? most[1] : obstacle_closing(pair, normal));
 }
 
-double ContactSide::overlap_ahead() const {
+double ContactSide::overlap_ahead(std::span<std::uint8_t> may_touch) const {
     float most = 0;
     for (std::size_t p = 0; p < pairs.pairs().size(); ++p) {
+        const Pair& pair = pairs.pairs()[p];
         const Separation& apart = pairs.separations()[p];
-        most = std::max(most, closing_of(pairs.pairs()[p], apart.normal) - apart.gap);
+        const float closing = closing_of(pair, apart.normal);
+        most = std::max(most, closing - apart.gap);
+        if (apart.gap - std::max(closing, 0.0F) < thickness)
+            for (std::size_t k = 0; k < pairs.moving_count(pair); ++k) may_touch[pair.points[k]] = 1;
     }
     return double{most};
 }

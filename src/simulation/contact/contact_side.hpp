@@ -72,7 +72,8 @@ struct ContactSide {
     /// How far a pair that was measured closes along its normal, on the way to `base`.
     float closing_of(const Pair& pair, const Vec3f& normal) const;
     /// The most by which pairs would close beyond their gaps on the way to `base`; not negative.
-    double overlap_ahead() const;
+    /// @param may_touch  [particle] set to 1 for those of pairs that come as near as the thickness
+    double overlap_ahead(std::span<std::uint8_t> may_touch) const;
 
     std::shared_ptr<const Elements> own, obstacle;   ///< the same of itself
     PointArrays obstacle_places, obstacle_before;    ///< of a model: now, and before it deformed in this step

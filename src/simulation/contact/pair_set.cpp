@@ -35,17 +35,16 @@ PairSet::SweptBox box_of(std::span<const std::uint32_t> points, const PointArray
     return box;
 }
 
-/// Not more than the reach apart, along every axis, at both ends of the displacements on the same side.
+/// Not more than the reach apart, along every axis, at both ends of the displacements on the same side. As
+/// numbers, without a branch.
 bool come_near(const PairSet::SweptBox& a, const PairSet::SweptBox& b, float reach) {
-    bool is_near = true;
+    int far = 0;
     for (std::size_t axis = 0; axis < 3; ++axis) {
-        const bool above =
-            (a.low_from[axis] - b.high_from[axis] > reach) & (a.low_to[axis] - b.high_to[axis] > reach);
-        const bool below =
-            (b.low_from[axis] - a.high_from[axis] > reach) & (b.low_to[axis] - a.high_to[axis] > reach);
-        is_near = is_near & !above & !below;
+        const auto is_far = [&](float from, float to) { return int{from > reach} & int{to > reach}; };
+        far |= is_far(a.low_from[axis] - b.high_from[axis], a.low_to[axis] - b.high_to[axis]) |
+               is_far(b.low_from[axis] - a.high_from[axis], b.low_to[axis] - a.high_to[axis]);
     }
-    return is_near;
+    return far == 0;
 }
 
 std::size_t edge_count(const Element& element) {

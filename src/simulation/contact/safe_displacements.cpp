@@ -10,9 +10,11 @@
 namespace echinus {
 
 SafeDisplacements::SafeDisplacements(std::span<ContactSide> sides, Places goals,
-                                     std::span<const std::uint8_t> is_held, float share)
-    : sides_(sides), goals_(goals), is_held_(is_held), share_(share), ends_(goals.begin(), goals.end()),
-      pushed_(goals.size()), enough_(sides.size()) {}
+                                     std::span<const std::uint8_t> is_held, std::span<const double> masses,
+                                     float share)
+    : sides_(sides), goals_(goals), is_held_(is_held), masses_(masses), share_(share),
+      ends_(goals.begin(), goals.end()), pushed_(goals.size()), pushed_by_(goals.size(), kNoObstacle),
+      enough_(sides.size()) {}
 
 Places SafeDisplacements::find(const Workers& workers) {
     for (ContactSide& side : sides_) side.to_frame(goals_, side.goal);
@@ -47,8 +49,10 @@ SafeDisplacements::Plane SafeDisplacements::plane_between(const ContactSide& sid
     const auto plane_along = [&](const Vec3f& normal, float gap) {
         return Plane{normal, room_of(side, gap), side.closing_of(pair, normal)};
     };
+    // What touches has no plane between: it is counted, and not pushed.
+    if (!(apart.gap > 0)) return {apart.normal, 0, 0};
     Plane best = plane_along(apart.normal, apart.gap);
-    if (best.left() >= 0 || !(apart.gap > 0)) return best;
+    if (best.left() >= 0) return best;
     const std::size_t own = own_count(pair.kind), moving = side.pairs.moving_count(pair);
     PassingParts<float> parts{pair.kind, {}, apart.normal, {}};
     for (std::size_t k = 0; k < 4; ++k) {
@@ -97,21 +101,24 @@ bool SafeDisplacements::correct(ContactSide& side, std::vector<float>& enough) {
 bool SafeDisplacements::push_apart(ContactSide& side, const Pair& pair, const Plane& plane) {
     const Vec3f& normal = plane.normal;
     const std::size_t own = own_count(pair.kind), moving = side.pairs.moving_count(pair);
-    constexpr float kNone = -std::numeric_limits<float>::infinity();
+    constexpr float kNothing = -std::numeric_limits<float>::infinity();
     std::array<float, 4> closing{};
-    std::array<float, 2> most{kNone, kNone}, held{kNone, kNone};
+    std::array<float, 2> most{kNothing, kNothing}, held{kNothing, kNothing}, mass{};
     for (std::size_t k = 0; k < moving; ++k) {
         const std::uint32_t i = pair.points[k];
         const std::size_t part = k < own ? 0 : 1;
         const float along = dot(normal, side.base[i] - side.safe[i]);
         closing[k] = part == 0 ? -along : along;
         most[part] = std::max(most[part], closing[k]);
+        if (!masses_.empty()) mass[part] += static_cast<float>(masses_[i]);
         if (is_held_[i] != 0) held[part] = std::max(held[part], closing[k]);
     }
     if (moving < 4) most[1] = held[1] = side.obstacle_closing(pair, normal);
     const float missing = most[0] + most[1] - plane.room * threshold::kPushedTo + side.least_gap / 4;
     const std::array<float, 2> free{most[0] - held[0], most[1] - held[1]};
-    const float first = std::min(std::max(missing / 2, missing - free[1]), free[0]);
+    const float of_first = moving < 4 ? 1 : masses_.empty() ? 0.5F : mass[1] / (mass[0] + mass[1]);
+    const float fair = missing * of_first;
+    const float first = std::min(std::max(fair, missing - free[1]), free[0]);
     const std::array<float, 2> push{first, std::min(missing - first, free[1])};
     bool is_any_pushed = false;
     for (std::size_t k = 0; k < moving; ++k) {
@@ -122,6 +129,7 @@ bool SafeDisplacements::push_apart(ContactSide& side, const Pair& pair, const Pl
         side.base.set(i, side.base[i] + normal * (part == 0 ? back : -back));
         ends_[i] = side.to_world(side.base[i]);
         pushed_[i] += back;
+        pushed_by_[i] = side.number;
         is_any_pushed = true;
     }
     return is_any_pushed;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "mechanics/energy_term.hpp"
+#include "simulation/contact/contact_set.hpp"
 #include "simulation/contact/contact_side.hpp"
 
 #include <cstddef>
@@ -17,9 +18,10 @@ class SafeDisplacements {
   public:
     /// @param sides    where pairs are listed; the others outlive this, too
     /// @param is_held  [particle] 1 for those that nothing pushes
+    /// @param masses   [particle] by which the parts of a pair share a push; none: they share it equally
     /// @param share    of each gap that may be closed, 0 to 1
     SafeDisplacements(std::span<ContactSide> sides, Places goals, std::span<const std::uint8_t> is_held,
-                      float share);
+                      std::span<const double> masses, float share);
 
     /// Corrects what is still to be corrected, for instance when more pairs are listed. Leaves in each side
     /// the pairs measured that are near on the way to the ends.
@@ -27,6 +29,8 @@ class SafeDisplacements {
     Places find(const Workers& workers);
     /// Whether find() has ended with nothing more to correct.
     bool has_converged() const { return has_converged_; }
+    /// [particle] the side against which it was pushed last, or kNoObstacle.
+    std::span<const std::uint32_t> pushed_by() const { return pushed_by_; }
     /// Pairs that touch in the safe state, or that are not kept apart: what is held closes them, or there is
     /// too little room.
     std::size_t unresolved_count() const { return unresolved_count_; }
@@ -48,9 +52,11 @@ class SafeDisplacements {
     std::span<ContactSide> sides_;
     Places goals_;
     std::span<const std::uint8_t> is_held_;
+    std::span<const double> masses_;
     float share_;
     std::vector<Vec3d> ends_;
-    std::vector<float> pushed_;              ///< [particle] how far in all
+    std::vector<float> pushed_; ///< [particle] how far in all
+    std::vector<std::uint32_t> pushed_by_;
     std::vector<std::vector<float>> enough_; ///< [side][pair] as of correct()
     std::size_t unresolved_count_ = 0;
     bool has_converged_ = false;

@@ -6,6 +6,8 @@
 #include "simulation/surfaces/edge_lengths.hpp"
 #include "simulation/surfaces/model_mesh.hpp"
 
+#include <echinus/error.hpp>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -27,6 +29,17 @@ float least_height_of(const Element& element, std::span<const Vec3f> positions) 
 float least_height_of(const ElasticTetrahedron& tetrahedron) {
     const auto& [b, c, d] = tetrahedron.gradients;
     return 1 / std::max({length(b), length(c), length(d), length(b + c + d)});
+}
+
+/// Layers that could come no nearer to each other than this would hold the deformable where it is.
+void require_resolved(float extent, float edge_length) {
+    const float least_gap = extent * threshold::kLeastGap;
+    if (!(least_gap > edge_length * threshold::kMostSelfThickness)) return;
+    throw Error(ErrorCode::InvalidOptions,
+                "the deformable begins " + std::to_string(extent) +
+                    " from the origin, where floats tell its layers apart only from " +
+                    std::to_string(least_gap) + " on, and its mean edge is " + std::to_string(edge_length) +
+                    "; move the scene nearer to the origin, or switch self_collision off");
 }
 
 /// [collider] 1 for those of which only particles keep out.
@@ -95,6 +108,7 @@ SurfaceContacts::SurfaceContacts(const Deformable& deformable, const std::vector
         for (const std::uint32_t v : tetrahedron.particles)
             most_[v] = std::min(most_[v], threshold::kMostOfHeight * least_height_of(tetrahedron));
     if (options.self_collision) {
+        require_resolved(largest_coordinate(places, own_->vertex_count()), edge_length);
         ContactSide& side = sides_.emplace_back(own_, places);
         side.number = static_cast<std::uint32_t>(collider_count_);
         side.thickness = static_cast<float>(options.self_thickness.value_or(*options.thickness));
@@ -108,6 +122,7 @@ SurfaceContacts::SurfaceContacts(const Deformable& deformable, const std::vector
     most_missed_ = threshold::kMostMissed * edge_length;
     frames_.resize(collider_count_ + 1);
     is_touching_.resize(own_->vertex_count());
+    stopped_by_.assign(own_->vertex_count(), kNoObstacle);
     safe_places_.resize(own_->vertex_count());
 }
 
@@ -153,7 +168,7 @@ bool SurfaceContacts::carry(const std::vector<Collider>& before, const std::vect
         }
         side.list(places, workers);
     }
-    const bool is_safe = find_ends(places, threshold::kMostClosedByCarrying, workers);
+    const bool is_safe = find_ends(places, {}, threshold::kMostClosedByCarrying, workers);
     is_carried_ = is_safe || in_any_case;
     for (ContactSide& side : sides_) side.end_deforming(is_carried_);
     if (!is_carried_) return false;
@@ -163,14 +178,16 @@ bool SurfaceContacts::carry(const std::vector<Collider>& before, const std::vect
 }
 
 double SurfaceContacts::overlap_ahead(const std::vector<Collider>& colliders, const PointArrays& from,
-                                      Places guess, const Workers& workers) {
+                                      Places guess, std::span<std::uint8_t> may_touch,
+                                      const Workers& workers) {
     double most = 0;
+    std::fill(may_touch.begin(), may_touch.end(), std::uint8_t{0});
     for (ContactSide& side : sides_) {
         if (!side.pairs.is_of_itself()) side.set_pose(colliders[side.number].pose);
         side.set_safe(from);
         side.list(guess, workers);
         side.measure_towards(guess, workers);
-        most = std::max(most, side.overlap_ahead());
+        most = std::max(most, side.overlap_ahead(may_touch));
     }
     return most;
 }
@@ -189,6 +206,7 @@ void SurfaceContacts::begin_step(const std::vector<Collider>& colliders, const P
     if (!is_carried_) start_ = places;
     set_safe(places);
     std::fill(is_touching_.begin(), is_touching_.end(), std::uint8_t{0});
+    std::fill(stopped_by_.begin(), stopped_by_.end(), kNoObstacle);
     for (ContactSide& side : sides_) {
         if (!side.pairs.is_of_itself()) side.set_pose(colliders[side.number].pose);
         if (!is_carried_) side.moves = side.has_deformed = false;
@@ -205,15 +223,19 @@ void SurfaceContacts::begin_step(const std::vector<Collider>& colliders, const P
 
 /// Of displacements to goals the ends as far as the planes between the pairs allow.
 /// @param places  in: the goals. Out: the ends
-/// @param share  of each gap that may be closed
+/// @param masses  by which parts share a push, or none
+/// @param share   of each gap that may be closed
 /// @return whether nothing meets on the way to the ends, but what is counted as unresolved
-bool SurfaceContacts::find_ends(std::span<Vec3d> places, float share, const Workers& workers) {
+bool SurfaceContacts::find_ends(std::span<Vec3d> places, std::span<const double> masses, float share,
+                                const Workers& workers) {
     const std::vector<Vec3d> goals(places.begin(), places.end());
-    SafeDisplacements displacements(sides_, goals, is_held_, share);
+    SafeDisplacements displacements(sides_, goals, is_held_, masses, share);
     for (int round = 0; round < threshold::kMostListingRounds; ++round) {
         const Places ends = displacements.find(workers);
         unresolved_ = displacements.unresolved_count();
         for (std::size_t i = 0; i < places.size(); ++i) places[i] = is_held_[i] != 0 ? goals[i] : ends[i];
+        for (std::size_t i = 0; i < places.size(); ++i)
+            if (const std::uint32_t by = displacements.pushed_by()[i]; by != kNoObstacle) stopped_by_[i] = by;
         if (!displacements.has_converged()) return false;
         bool is_any_added = false;
         for (ContactSide& side : sides_) is_any_added = side.list(places, workers) || is_any_added;
@@ -222,50 +244,59 @@ bool SurfaceContacts::find_ends(std::span<Vec3d> places, float share, const Work
     return false;
 }
 
-/// Goes from the safe state towards goals as far as the planes between the pairs allow.
+/// The displacement from the safe state that all have in common, which nothing within the deformable takes
+/// from it; 0 where any are held.
+Vec3d SurfaceContacts::common_displacement(Places goals) const {
+    Vec3d sum;
+    double mass = 0;
+    for (std::size_t i = 0; i < goals.size(); ++i) {
+        if (is_held_[i] != 0) return {};
+        sum += (goals[i] - safe_places_[i]) * masses_[i];
+        mass += masses_[i];
+    }
+    return sum * (1 / mass);
+}
+
+/// Goes from the safe state towards goals as far as the planes between the pairs allow. Less far, where too
+/// little room or ever more pairs are found, or where particles that are stopped strain what goes on beside
+/// them so that energy rises, but for what all have in common; at last what is not held stays.
 /// @param places  in: the goals. Out: the new safe state, whose pairs are not measured yet
 /// @return how many particles were stopped
-std::size_t SurfaceContacts::go_towards(std::span<Vec3d> places, const Workers& workers) {
-    const std::size_t count = own_->vertex_count();
-    const std::vector<Vec3d> goals(places.begin(), places.end());
-    // Half as far, where too little room or ever more pairs are found; and at last what is not held stays.
-    for (int halvings = 0; !find_ends(places, 1, workers) && halvings < threshold::kMostHalvings;) {
-        const double share = ++halvings < threshold::kMostHalvings ? std::ldexp(1.0, -halvings) : 0;
-        for (std::size_t i = 0; i < count; ++i)
-            places[i] = is_held_[i] != 0 ? goals[i] : safe_places_[i] + (goals[i] - safe_places_[i]) * share;
-    }
-    std::size_t stopped = 0;
-    missed_ = 0;
-    for (std::size_t i = 0; i < count; ++i) {
-        const double missed = length(goals[i] - places[i]);
-        missed_ = std::max(missed_, missed);
-        if (missed > 0) {
+std::size_t SurfaceContacts::go_towards(std::span<Vec3d> places, const StepEnergy& energy,
+                                        const Workers& workers) {
+    const std::vector<Vec3d> goals(places.begin(), places.end()), from = safe_places_;
+    const Vec3d common = common_displacement(goals);
+    std::optional<double> most;
+    std::size_t most_stopped = 0;
+    for (int halvings = 0;; ++halvings) {
+        const double share = halvings < threshold::kMostHalvings ? std::ldexp(1.0, -halvings) : 0;
+        const Vec3d kept = share > 0 ? common : Vec3d{};
+        const auto goal_of = [&](std::size_t i) {
+            if (is_held_[i] != 0 || share == 1) return goals[i];
+            return from[i] + kept + (goals[i] - from[i] - kept) * share;
+        };
+        for (std::size_t i = 0; i < goals.size(); ++i) places[i] = goal_of(i);
+        const bool is_safe = find_ends(places, masses_, 1, workers);
+        std::size_t stopped = 0;
+        missed_ = 0;
+        for (std::size_t i = 0; i < goals.size(); ++i) {
+            const double missed = length(goal_of(i) - places[i]);
+            missed_ = std::max(missed_, missed);
+            if (!(missed > 0)) continue;
             ++stopped;
             is_touching_[i] = 1;
         }
+        most_stopped = std::max(most_stopped, stopped);
+        if (share == 0 || (is_safe && most_stopped == 0)) break;
+        if (!is_safe) continue;
+        if (!most) most = energy(from);
+        if (energy(places) <= *most) break;
+    }
+    for (std::size_t i = 0; i < goals.size(); ++i) {
         safe_places_[i] = places[i];
         safe_.set(i, Vec3f(places[i]));
     }
-    return stopped;
-}
-
-/// Goes towards goals, or less far: particles that are stopped strain what goes on beside them, the less the
-/// shorter the way is.
-std::size_t SurfaceContacts::descend(std::span<Vec3d> places, const StepEnergy& energy,
-                                     const Workers& workers) {
-    const std::vector<Vec3d> goals(places.begin(), places.end()), from = safe_places_;
-    const PointArrays safe = safe_;
-    std::size_t stopped = go_towards(places, workers);
-    if (stopped == 0) return 0;
-    const double most = energy(from);
-    for (int halvings = 1; halvings <= threshold::kMostHalvings && energy(places) > most; ++halvings) {
-        safe_ = safe;
-        safe_places_ = from;
-        const double share = std::ldexp(1.0, -halvings);
-        for (std::size_t i = 0; i < goals.size(); ++i) places[i] = from[i] + (goals[i] - from[i]) * share;
-        stopped = std::max(stopped, go_towards(places, workers));
-    }
-    return stopped;
+    return most_stopped;
 }
 
 std::size_t SurfaceContacts::advance(std::span<Vec3d> places, const StepEnergy& energy,
@@ -274,7 +305,7 @@ std::size_t SurfaceContacts::advance(std::span<Vec3d> places, const StepEnergy& 
     std::size_t stopped = 0;
     for (int pass = 0; pass < threshold::kMostPasses; ++pass) {
         std::copy(goals.begin(), goals.end(), places.begin());
-        stopped = descend(places, energy, workers);
+        stopped = go_towards(places, energy, workers);
         if (std::exchange(is_begun_, false)) unresolved_count_ += unresolved_;
         for (ContactSide& side : sides_) {
             side.set_safe(safe_);
@@ -370,6 +401,27 @@ void SurfaceContacts::add_contacts(const ContactSide& side, Places goals, bool i
 
 void SurfaceContacts::put_outside(std::span<Vec3d> places, const StepEnergy& energy, const Workers& workers) {
     if (particles_.put_outside(places, is_touching_)) advance(places, energy, workers);
+}
+
+bool SurfaceContacts::stops() const {
+    return std::any_of(stopped_by_.begin(), stopped_by_.end(),
+                       [&](std::uint32_t side) { return side < collider_count_; });
+}
+
+void SurfaceContacts::add_loads(Places places, std::span<const Vec3d> forces,
+                                std::span<const std::uint32_t> held_by) {
+    // Where stops have shortened the step of all, those beside the stopped ones are stopped, too.
+    std::vector<std::size_t> stops(collider_count_);
+    for (const std::uint32_t side : stopped_by_)
+        if (side < collider_count_) ++stops[side];
+    const auto most = std::max_element(stops.begin(), stops.end());
+    const std::uint32_t others =
+        most != stops.end() && *most > 0 ? static_cast<std::uint32_t>(most - stops.begin()) : kNoObstacle;
+    for (std::size_t i = 0; i < forces.size(); ++i) {
+        const std::uint32_t stopped_by = stopped_by_[i] < collider_count_ ? stopped_by_[i] : others;
+        const std::uint32_t collider = is_held_[i] != 0 ? held_by[i] : stopped_by;
+        if (collider < collider_count_) contacts_.add_load(collider, places[i], forces[i], frames_[collider]);
+    }
 }
 
 void SurfaceContacts::end_step(Places places) {

@@ -49,8 +49,9 @@ class SurfaceContacts {
 
     /// By how much displacements to these places would close pairs beyond their gaps, at most; length.
     /// Colliders stand where they are.
+    /// @param may_touch  [particle] out: 1 for those that contacts may push there
     double overlap_ahead(const std::vector<Collider>& colliders, const PointArrays& from, Places guess,
-                         const Workers& workers);
+                         std::span<std::uint8_t> may_touch, const Workers& workers);
 
     /// Begins a step: colliders stand where it ends.
     /// @param places  safe beside the colliders as they stand then: those of the step before, carried along
@@ -75,6 +76,11 @@ class SurfaceContacts {
     /// Puts particles outside of colliders without faces, as far as those with faces allow.
     void put_outside(std::span<Vec3d> places, const StepEnergy& energy, const Workers& workers);
 
+    /// Has a collider stopped a particle in this step?
+    bool stops() const;
+    /// Loads of what colliders have stopped in this step, or hold. @param forces  [particle] by which
+    /// @param held_by  [particle] the collider that holds it, or kNoObstacle
+    void add_loads(Places places, std::span<const Vec3d> forces, std::span<const std::uint32_t> held_by);
     /// The friction that this step has left in contacts stays for the next.
     void end_step(Places places);
 
@@ -94,9 +100,10 @@ class SurfaceContacts {
   private:
     void set_safe(const PointArrays& places);
     Vec3d slip_start(const ContactSide& side, const Pair& pair, const std::array<double, 4>& shares) const;
-    bool find_ends(std::span<Vec3d> places, float share, const Workers& workers);
-    std::size_t go_towards(std::span<Vec3d> places, const Workers& workers);
-    std::size_t descend(std::span<Vec3d> places, const StepEnergy& energy, const Workers& workers);
+    bool find_ends(std::span<Vec3d> places, std::span<const double> masses, float share,
+                   const Workers& workers);
+    Vec3d common_displacement(Places goals) const;
+    std::size_t go_towards(std::span<Vec3d> places, const StepEnergy& energy, const Workers& workers);
     void find_contacts(Places goals, bool is_solved);
     void add_contacts(const ContactSide& side, Places goals, bool is_solved);
     float thickness_of(const ContactSide& side, const Pair& pair) const;
@@ -120,6 +127,8 @@ class SurfaceContacts {
     PointArrays safe_;                      ///< the safe state
     std::vector<Vec3d> safe_places_;        ///< the same, with all digits
     std::vector<std::uint8_t> is_touching_; ///< [particle] in this step
+    std::vector<std::uint32_t>
+        stopped_by_; ///< [particle] the side that stopped it last in this step, or kNoObstacle
 };
 
 } // namespace echinus

@@ -53,7 +53,7 @@ inline constexpr float kPushedTo = 0.9F;
 inline constexpr int kMostPushingRounds = 64;
 /// Rounds in which ends that were not expected are looked at anew, and times that displacements are halved
 /// where those do not suffice; then nothing moves that is not held.
-inline constexpr int kMostListingRounds = 8, kMostHalvings = 6;
+inline constexpr int kMostListingRounds = 8, kMostHalvings = 4;
 /// Mean edges: so far a particle may end from its goal before planes are measured anew on the way there; and
 /// how often that is done. They turn with what passes along them.
 inline constexpr float kMostMissed = 0.1F;
@@ -73,7 +73,7 @@ inline constexpr double kMostCarried = 4, kMostOverlap = 1;
 inline constexpr std::uint32_t kMostPartsOfFrame = 32;
 /// Of a frame: a part in which colliders cannot carry what is near them is halved, so that it can give way
 /// meanwhile, down to this. Less holds harder squeezes, and takes more time in them.
-inline constexpr float kLeastPartOfFrame = 1.0F / 64;
+inline constexpr float kLeastPartOfFrame = 1.0F / 32;
 /// Displacements of the fastest particle in a frame: how far off vertices of a collider that deforms may be
 /// to decide about the division.
 inline constexpr double kDecidingRoom = 2;
