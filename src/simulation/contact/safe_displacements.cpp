@@ -110,8 +110,10 @@ bool SafeDisplacements::push_apart(ContactSide& side, const Pair& pair, const Pl
         const float along = dot(normal, side.base[i] - side.safe[i]);
         closing[k] = part == 0 ? -along : along;
         most[part] = std::max(most[part], closing[k]);
-        if (!masses_.empty()) mass[part] += static_cast<float>(masses_[i]);
-        if (is_held_[i] != 0) held[part] = std::max(held[part], closing[k]);
+        if (is_held_[i] != 0)
+            held[part] = std::max(held[part], closing[k]);
+        else
+            mass[part] += masses_.empty() ? 0 : static_cast<float>(masses_[i]);
     }
     if (moving < 4) most[1] = held[1] = side.obstacle_closing(pair, normal);
     const float missing = most[0] + most[1] - plane.room * threshold::kPushedTo + side.least_gap / 4;
