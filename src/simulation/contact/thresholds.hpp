@@ -41,7 +41,7 @@ inline constexpr int kMostRoundsOutside = 4;
 
 /// Mean edges around its displacement in which a vertex looks for pairs, beside the thickness. More lists
 /// more pairs, less often.
-inline constexpr float kReach = 0.25F;
+inline constexpr float kReach = 0.1F;
 /// Share of a gap, or of the thickness where that is less, that always remains of it: rounding then has no
 /// say.
 inline constexpr float kLeastOfGap = 1.0F / 16, kLeastOfThickness = 1.0F / 4;
