@@ -73,7 +73,7 @@ inline constexpr double kMostCarried = 4, kMostOverlap = 1;
 inline constexpr std::uint32_t kMostPartsOfFrame = 32;
 /// Of a frame: a part in which colliders cannot carry what is near them is halved, so that it can give way
 /// meanwhile, down to this. Less holds harder squeezes, and takes more time in them.
-inline constexpr float kLeastPartOfFrame = 1.0F / 32;
+inline constexpr float kLeastPartOfFrame = 1.0F / 64;
 /// Displacements of the fastest particle in a frame: how far off vertices of a collider that deforms may be
 /// to decide about the division.
 inline constexpr double kDecidingRoom = 2;
