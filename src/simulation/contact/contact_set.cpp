@@ -87,17 +87,15 @@ ContactSet::Bristle ContactSet::remembered(const Contact& contact) const {
                 continue;
             mean.slip += patch.slip * (turn * share);
             mean.push += patch.push * share;
+            mean.force += patch.force * share;
             weights += patch.weight * share;
         }
     }
     if (!(weights > 0)) return {};
     mean.slip *= 1 / weights;
     mean.push *= 1 / weights;
+    mean.force *= 1 / weights;
     return mean;
-}
-
-double ContactSet::push_of(const Contact& contact, double gap) const {
-    return -gap_energy(gap, contact.thickness, barrier_force(contact)).first;
 }
 
 double ContactSet::barrier_force(const Contact& contact) const {
@@ -105,17 +103,24 @@ double ContactSet::barrier_force(const Contact& contact) const {
            contact.mobility;
 }
 
-void ContactSet::add(const Contact& contact, const Vec3d& start, std::optional<double> push) {
+void ContactSet::add(const Contact& contact, const Vec3d& start, std::optional<double> gap) {
     Held held{};
     static_cast<Contact&>(held) = contact;
-    held.force = barrier_force(contact);
+    const Bristle before = remembered(contact);
+    held.force = std::max(barrier_force(contact), std::min(before.push * threshold::kBarrierOfPush,
+                                                           before.force * threshold::kMostBarrierGrowth));
     held.stiffness = threshold::kBristleStiffness / (contact.mobility * step_ * step_);
-    if (contact.friction > 0 && push.value_or(1) > 0) {
-        const Bristle before = remembered(contact);
-        held.most_friction = contact.friction * push.value_or(before.push);
+    const double push = gap ? push_of(held, *gap) : before.push;
+    if (contact.friction > 0 && (push > 0 || !gap)) {
+        held.most_friction = contact.friction * push;
         held.slip_offset = before.slip - start;
     }
     contacts_.push_back(held);
+}
+
+/// The normal force of a gap.
+double ContactSet::push_of(const Held& contact, double gap) {
+    return -gap_energy(gap, contact.thickness, contact.force).first;
 }
 
 double ContactSet::gap_of(const Held& contact, Places places) const {
@@ -218,7 +223,8 @@ void ContactSet::end_step(Places places, std::span<const std::optional<FrameChan
                      frame);
         if (!(push > 0)) continue;
         Bristle bristle{
-            contact.key, {}, turned_to_local(frame, contact.normal), turned_to_local(frame, slip), push};
+            contact.key, {},           turned_to_local(frame, contact.normal), turned_to_local(frame, slip),
+            push,        contact.force};
         for (std::size_t k = 0; k < 4; ++k) bristle.weights[k] = static_cast<float>(contact.weights[k]);
         bristles_.push_back(bristle);
     }
@@ -239,6 +245,7 @@ void ContactSet::find_patches() {
             Patch& patch = patch_at(bristle.key.points[k], bristle.key.obstacle, bristle.normal * turn);
             patch.slip += bristle.slip * (turn * weight);
             patch.push += bristle.push * weight;
+            patch.force += bristle.force * weight;
             patch.weight += weight;
         }
 }
@@ -276,6 +283,7 @@ void ContactSet::archive(StateArchive& state) {
         state.value(bristle.normal);
         state.value(bristle.slip);
         state.value(bristle.push);
+        state.value(bristle.force);
     });
     for (Impulse& impulse : impulses_) {
         state.value(impulse.linear);

@@ -57,10 +57,8 @@ class ContactSet : public ContactEnergy {
     /// Forgets the contacts, not the bristles.
     void clear() { contacts_.clear(); }
     /// @param start  the sum of weight * place where the step began, taken along with the obstacle
-    /// @param push  the normal force that limits its friction; none: that of the step before
-    void add(const Contact& contact, const Vec3d& start, std::optional<double> push);
-    /// The normal force of a gap.
-    double push_of(const Contact& contact, double gap) const;
+    /// @param gap  whose normal force limits its friction; none: that of the step before does
+    void add(const Contact& contact, const Vec3d& start, std::optional<double> gap);
     /// Keeps bristles and loads of the step that ends here. @param is_touching  out: 1 where a contact pushes
     void end_step(Places places, std::span<const std::optional<FrameChange>> frames,
                   std::span<std::uint8_t> is_touching);
@@ -93,19 +91,21 @@ class ContactSet : public ContactEnergy {
         std::array<float, 4> weights{};
         Vec3d normal, slip; ///< in the obstacle's frame between steps, in the world during one
         double push = 0;    ///< the normal force when the step ended
+        double force = 0;   ///< of the barrier
     };
     static constexpr std::uint32_t kNone = 0xFFFFFFFF;
     /// The bristles around a particle that lie in about the same plane, seen from there.
     struct Patch {
         std::uint32_t obstacle, next; ///< the next one of the particle
         Vec3d normal, slip;           ///< the slip weighted, as the push
-        double push = 0, weight = 0;
+        double push = 0, force = 0, weight = 0;
     };
     struct Impulse {
         Vec3d linear, angular; ///< the moment about where the collider stood when the frame's last step ended
     };
 
     double barrier_force(const Contact& contact) const;
+    static double push_of(const Held& contact, double gap);
     const Bristle* find(const ContactKey& key) const;
     Bristle remembered(const Contact& contact) const;
     void find_patches();

@@ -117,8 +117,7 @@ void ParticleContacts::add_to(ContactSet& contacts, Places places, std::span<con
         contact.thickness = thickness_;
         contact.friction = friction_;
         contact.mobility = 1 / masses[i];
-        contacts.add(contact, carried(i, found.obstacle),
-                     is_solved ? std::optional(contacts.push_of(contact, gap)) : std::nullopt);
+        contacts.add(contact, carried(i, found.obstacle), is_solved ? std::optional(gap) : std::nullopt);
     }
 }
 

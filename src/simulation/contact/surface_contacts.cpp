@@ -394,8 +394,7 @@ void SurfaceContacts::add_contacts(const ContactSide& side, Places goals, bool i
         if (!(gap + std::min(dot(normal, ahead), 0.0) < double{threshold::kReady} * thickness) ||
             !(contact.mobility > 0))
             continue;
-        contacts_.add(contact, slip_start(side, pair, shares),
-                      is_solved ? std::optional(contacts_.push_of(contact, gap)) : std::nullopt);
+        contacts_.add(contact, slip_start(side, pair, shares), is_solved ? std::optional(gap) : std::nullopt);
     }
 }
 

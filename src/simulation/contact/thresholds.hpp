@@ -11,6 +11,10 @@ namespace echinus::threshold {
 /// Force of a barrier over the weight that the contact carries. With one layer on it a contact at rest is
 /// 0.77 of the thickness wide, under ten 0.4. More makes contacts wider and stiffer.
 inline constexpr double kBarrierWeights = 5;
+/// Force of a barrier over what its contact pushed with in the step before, where that is more; so a contact
+/// that carries much is 0.4 of the thickness wide, too. And by what it may grow in a step: more lifts what is
+/// suddenly loaded faster than is quiet.
+inline constexpr double kBarrierOfPush = 0.5, kMostBarrierGrowth = 1.5;
 /// Share of the thickness from which on the barrier goes on as a parabola. Less holds harder impacts within
 /// Newton's step, and makes its linear systems worse conditioned.
 inline constexpr double kLeastBarrierShare = 1.0 / 16;
