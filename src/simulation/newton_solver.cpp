@@ -68,6 +68,7 @@ NewtonSolver::NewtonSolver(Deformable deformable_in, std::vector<Collider> colli
 void NewtonSolver::step() {
     const Workers::Session session(workers_);
     bounds_.require_sound();
+    const std::uint64_t truncated_before = profile.truncated_count;
     {
         const Stopwatch stopwatch(profile.collision_seconds);
         build_maps();
@@ -94,7 +95,7 @@ void NewtonSolver::step() {
     accelerations_.assign(deformable.particle_count(), options.gravity);
     publish();
     ++frame;
-    rest_.watch(deformable.positions, largest_speed);
+    rest_.watch(deformable.positions, largest_speed, profile.truncated_count > truncated_before);
 }
 
 /// Where nothing stops it, no particle leaves all bounds in the frame.

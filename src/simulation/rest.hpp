@@ -16,11 +16,12 @@ class RestWatch {
     RestWatch(const RestCondition& condition, const std::vector<Vec3f>& positions)
         : condition_(condition), places_(positions) {}
 
-    /// To be called after each frame.
-    void watch(const std::vector<Vec3f>& positions, double largest_speed) {
+    /// To be called after each frame. @param is_stopped  something was stopped in it, which is no rest
+    void watch(const std::vector<Vec3f>& positions, double largest_speed, bool is_stopped = false) {
         const bool all_near = all_stay(positions);
         if (!all_near) places_ = positions;
-        quiet_frame_count_ = all_near && largest_speed <= condition_.speed ? quiet_frame_count_ + 1 : 0;
+        quiet_frame_count_ =
+            all_near && !is_stopped && largest_speed <= condition_.speed ? quiet_frame_count_ + 1 : 0;
     }
     bool at_rest() const { return quiet_frame_count_ >= condition_.frame_count; }
 

@@ -100,7 +100,7 @@ class PairSet {
     Boxes own_boxes_, obstacle_boxes_;
     std::vector<std::vector<std::array<std::uint32_t, 2>>> near_elements_; ///< by worker
     PiecewiseList<Pair> found_;
-    std::vector<Pair> listed_, unsorted_;
+    std::vector<Pair> listed_;
     std::vector<float> listed_gaps_; ///< where the displacements began; within a step ascending
     float gap_step_ = 0;
     std::vector<std::uint8_t> is_near_; ///< [listed] 1 of those that are in `near_`

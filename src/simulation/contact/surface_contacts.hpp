@@ -61,9 +61,6 @@ class SurfaceContacts {
                     std::span<const std::uint8_t> is_held, double step, const Workers& workers);
     /// Contact of particles with colliders without faces, in the step that begins.
     ParticleContacts& particles() { return particles_; }
-    /// Does any collider, or the deformable itself, have faces that collide?
-    bool has_surfaces() const { return !sides_.empty(); }
-
     /// Of the step, with the contacts that were measured last.
     using StepEnergy = std::function<double(Places)>;
     /// Goes from the safe state towards these places as far as is proven safe and raises the energy nowhere,
