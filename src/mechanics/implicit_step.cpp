@@ -184,7 +184,6 @@ double ImplicitStep::search(std::span<Vec3d> places, const ContactEnergy* contac
         share = std::min(share / 2, std::max(share / 10, least));
         ++report.halvings;
     }
-    if (slope < 0) report.energy_ratio = (energy - found) / (-slope / 2);
     energy = found;
     std::copy(trial_.begin(), trial_.end(), places.begin());
     return share;

@@ -46,9 +46,6 @@ struct StepBudget {
 struct StepReport {
     std::uint32_t newton_steps = 0, linear_iterations = 0, halvings = 0;
     double last_move = 0; ///< the largest displacement of a particle in the last Newton step
-    /// By which the energy of the step has fallen, over that which the quadratic model promised: about 1
-    /// where it has converged.
-    double energy_ratio = 1;
 };
 
 /// Steps of a deformable's motion: each finds a minimum of

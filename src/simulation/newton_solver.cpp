@@ -1,6 +1,5 @@
 #include "simulation/newton_solver.hpp"
 
-#include "collider/frame_change.hpp"
 #include "simulation/contact/carry_field.hpp"
 #include "simulation/contact/thresholds.hpp"
 #include "simulation/stopwatch.hpp"
@@ -169,7 +168,7 @@ bool NewtonSolver::step_part(const FramePart& part) {
     choose_orders(share < 1);
     step_.begin(motion_, accelerations_, is_held_, seconds, options.air_drag);
     step_.calm(from, places, workers_);
-    // In a part of a frame inertia has more of a say, and fewer steps lead as far.
+    // Inertia weighs more in a part of a frame, so that fewer steps lead as far.
     const std::uint32_t newton_steps =
         share < 1 ? (options.newton_step_count + 1) / 2 : options.newton_step_count;
     minimise(places, start, seconds, newton_steps);
@@ -205,8 +204,9 @@ PointArrays NewtonSolver::places_now() const {
     return places;
 }
 
-/// Where the step begins: what colliders carry is with them. None: they cannot carry it so far.
-/// @param is_least  carry it in any case
+/// Where the step begins: what colliders carry is with them.
+/// @param is_least  carries it even where something meets then
+/// @return none where they cannot carry it so far
 std::optional<PointArrays> NewtonSolver::carried_start(const std::vector<Collider>& before,
                                                        const FramePart& part, bool is_least) {
     const PointArrays from = places_now();

@@ -189,6 +189,18 @@ TEST(SurfaceCollision, LeavesASheetOverAThinPostLittleStretched) {
     EXPECT_LT(largest, 1.2);
 }
 
+TEST(SurfaceCollision, CarriesALargeSheetOnAThinPostByContactAlone) {
+    // Two contacts carry hundreds of particles: none is pressed to where it would have to be stopped.
+    SimulationOptions options{.thickness = 0.008, .surface_collision = true};
+    options.air_drag = 1;
+    Simulation simulation(sheet_at(0.51, 2.2, 31), colliders_of({make_box({0.02, 0.02, 1})}), options);
+    for (int frame = 0; frame < 80; ++frame) simulation.step();
+    const std::uint64_t before = simulation.profile().truncated_count;
+    for (int frame = 0; frame < 20; ++frame) simulation.step();
+    EXPECT_EQ(simulation.profile().truncated_count, before);
+    EXPECT_LT(simulation.residual().largest, 0.05);
+}
+
 TEST(SurfaceCollision, KeepsASheetOnEitherSideOfAnOpenSurface) {
     // Above a dome, and in a bowl, whose inside is where the sheet is.
     expect_falls_without_meeting(half_ball(true), {}, sheet_at(0.55, 1.2, 25, {0, 0, -0.04}), 50);

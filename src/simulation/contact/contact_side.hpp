@@ -95,8 +95,8 @@ struct ContactSide {
     PointArrays start;                 ///< where this step began, beside a model that moves; as its frame was
     bool moves = false;                ///< does the model move in this step?
     PointArrays safe;                  ///< where the pairs are measured
-    PointArrays base;                  ///< and where displacements lead them that they make together
-    PointArrays goal;                  ///< and those of each alone
+    PointArrays base;                  ///< and where displacements lead that have been corrected so far
+    PointArrays goal;                  ///< and those that are wanted
     bool is_elsewhere = true;          ///< than where pairs were measured
     std::vector<float> strayed, ahead; ///< scratch of measure()
 

@@ -103,7 +103,7 @@ class PairSet {
     std::vector<Pair> listed_;
     std::vector<float> listed_gaps_; ///< where the displacements began; within a step ascending
     float gap_step_ = 0;
-    std::vector<std::uint8_t> is_near_; ///< [listed] 1 of those that are in `near_`
+    std::vector<std::uint8_t> is_near_; ///< [listed] 1 for those that are in near_
     std::vector<Pair> near_;
     std::vector<Separation> separations_;
 };

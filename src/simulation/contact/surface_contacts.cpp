@@ -42,7 +42,7 @@ void require_resolved(float extent, float edge_length) {
                     "; move the scene nearer to the origin, or switch self_collision off");
 }
 
-/// [collider] 1 for those of which only particles keep out.
+/// [collider] 1 for those whose faces do not collide: only particles keep out of them.
 std::vector<std::uint8_t> without_faces(const std::vector<Collider>& colliders,
                                         const SimulationOptions& options) {
     std::vector<std::uint8_t> result;

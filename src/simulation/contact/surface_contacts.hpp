@@ -40,8 +40,8 @@ class SurfaceContacts {
     /// @param deformations  [collider] in the frame of which the step is a part
     /// @param from  safe
     /// @param carried  in: where the field of the colliders carries each particle. Out: where it begins
-    /// @param in_any_case  even if something meets then, which is counted
-    /// @return whether nothing meets. If not, nothing has changed, but in any case
+    /// @param in_any_case  carries them even where something meets then, which is counted
+    /// @return whether they were carried; else nothing has changed
     bool carry(const std::vector<Collider>& before, const std::vector<Collider>& after,
                std::span<const Deformation> deformations, const FramePart& part, const PointArrays& from,
                PointArrays& carried, std::span<const std::uint8_t> is_held, bool in_any_case,
@@ -114,7 +114,7 @@ class SurfaceContacts {
     std::vector<float> most_; ///< by vertex: the most thickness that what is around it leaves room for
     std::vector<std::optional<FrameChange>> frames_; ///< by side
     std::span<const std::uint8_t> is_held_;
-    bool is_begun_ = false; ///< a step, in which no particle has moved
+    bool is_begun_ = false; ///< has a step begun in which no particle has moved yet?
     float most_missed_ = 0;
     double missed_ = 0;                     ///< how far a particle has ended from its goal, at most
     std::size_t unresolved_ = 0;            ///< of the displacements that were looked at last
