@@ -1,4 +1,4 @@
-"""What pip and `build` call to make a wheel or a source distribution (PEP 517): CMake compiles, this packs.
+"""Called by pip and `build` to make a wheel or a source distribution (PEP 517): CMake compiles, this packs.
 
 The setting ``build-dir`` names a build folder that is already configured with ECHINUS_BUILD_PYTHON=ON; without it
 the module is built in build/python.

@@ -1,4 +1,4 @@
-// A ball falls on a cloth that is held along its border. What the cloth puts on the ball moves the ball, and
+// A ball falls on a cloth that is held along its border. The load of the cloth moves the ball, and
 // the ball the cloth: the loop of a host that has a solver for rigid bodies of its own.
 
 #include <echinus/echinus.hpp>

@@ -77,7 +77,7 @@ def trial():
 
 
 class User:
-    """What a user does in the 3D view."""
+    """The acts of a user in the 3D view."""
 
     def __init__(self):
         self.window = bpy.context.window_manager.windows[0]

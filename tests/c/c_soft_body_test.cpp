@@ -252,7 +252,7 @@ TEST(CColliders, DeformAsInCpp) {
         pair.by_cpp.set_collider_vertices(0, vertices);
         pair.expect_same_after(2);
     }
-    // What is read then is the collider as it is: a point that only the larger ball has.
+    // A reading then gives the collider as it is: a point that only the larger ball has.
     expect_ok(echinus_simulation_read_collider(pair.in_c.get(), 0, &before));
     const float point[3] = {0, 0, -0.31F};
     std::uint8_t inside = 0;

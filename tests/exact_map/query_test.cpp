@@ -291,7 +291,7 @@ TEST(NearestFaces, OfPlacesNearTheSurfaceAreSoughtFromALeafNearBy) {
 
 namespace {
 
-/// What the lattice and the rounding to float may change of a distance.
+/// How much the lattice and the rounding to float may change a distance.
 double tolerance(const ExactMapView& map, double distance) {
     return 4e-6 * double{map.radius} + 1e-7 * std::fabs(distance);
 }

@@ -43,7 +43,7 @@ struct CheckResult {
     bool holds() const;
 };
 
-/// What echinus-check prints (check_report.cpp).
+/// The report that echinus-check prints (check_report.cpp).
 std::string to_json(const CheckResult& result);
 std::string to_text(const CheckResult& result);
 

@@ -19,7 +19,7 @@ using Segment = Kernel::Segment_3;
 /// CGAL's predicates want triangles with an area and segments with a length.
 using Shape = std::variant<Point, Segment, Kernel::Triangle_3>;
 
-/// What one to three points span.
+/// The convex hull of one to three points.
 Shape hull_of(std::vector<Point> points) {
     std::sort(points.begin(), points.end());
     points.erase(std::unique(points.begin(), points.end()), points.end());

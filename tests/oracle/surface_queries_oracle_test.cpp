@@ -186,7 +186,7 @@ double distance_to_edge(const NearWay& way, const Vec3d& a, const Vec3d& b) {
     return std::min(distance_to_line(a, way), distance_to_line(b, way));
 }
 
-/// What the way meets first on the map's lattice.
+/// The first face that the way meets on the map's lattice.
 struct Meeting {
     std::int32_t face = Contact::kUnknownFace;
     bool entering = false;

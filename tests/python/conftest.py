@@ -17,5 +17,5 @@ def huge_switch_interval():
     yield
     sys.setswitchinterval(before)
 
-# What a shell starts in the background ignores Ctrl-C, and so would its children: tests of it would never end.
+# A program that a shell starts in the background ignores Ctrl-C, and so would its children: tests of it would never end.
 signal.signal(signal.SIGINT, signal.default_int_handler)

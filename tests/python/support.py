@@ -1,4 +1,4 @@
-"""What several tests use: meshes, points around them, and the C++ program."""
+"""Shared by several tests: meshes, points around them, and the C++ program."""
 
 import os
 import pathlib

@@ -87,7 +87,7 @@ CALLS = [
     (SIMULATION.set_particle_velocity, {"particle": 0, "velocity": (0, 0, 0)}),
     (SIMULATION.blow, {"wind": (0, 0, 0), "rate": 1}),
 ]
-#: What the library or the package may answer.
+#: The errors by which the library or the package may refuse.
 REFUSED = (TypeError, ValueError, IndexError, ech.Error)
 
 #: For each type, values that are none of it, and values that no argument of it may have.

@@ -29,7 +29,7 @@ TriangleMesh without_faces(TriangleMesh mesh, const Goes& goes) {
     return mesh;
 }
 
-/// What the mesh had comes first and is as it was.
+/// The faces and vertices that the mesh had come first and are as they were.
 void expect_only_faces_added(const TriangleMesh& before, const RepairedMesh& after) {
     EXPECT_EQ(after.mesh.vertices, before.vertices);
     ASSERT_EQ(after.mesh.faces.size(), before.faces.size() + after.report.faces_added);

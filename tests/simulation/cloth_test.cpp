@@ -14,7 +14,7 @@ using namespace echinus;
 
 namespace {
 
-/// What joins two particles of a sheet, by how far apart they are in columns and rows; nothing otherwise.
+/// Whether a stick of a kind joins two particles of a sheet, by how far apart they are in columns and rows.
 bool should_join(int columns_apart, int rows_apart, StickKind kind) {
     const int far = std::max(columns_apart, rows_apart);
     const int near = std::min(columns_apart, rows_apart);

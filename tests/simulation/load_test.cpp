@@ -1,4 +1,4 @@
-// What deformables put on colliders: weights, friction, moments and momentum.
+// The loads that deformables put on colliders: weights, friction, moments and momentum.
 
 #include "support/draping.hpp"
 #include "support/soft_bodies.hpp"

@@ -490,8 +490,8 @@ TEST(SoftBodyPhysics, KeepsItsVolumeWhereItCannotBeCompressed) {
 }
 
 TEST(SoftBodyPhysics, SlidesDownASlopeOnlyBeyondTheAngleOfFrictionAndThenAsFastAsCoulombSays) {
-    // The angle is atan(0.5) = 26.6 degrees. What falls onto a slope slides until friction has braked it; so
-    // a box is turned under a block, about a line in its top.
+    // The angle is atan(0.5) = 26.6 degrees. A block that falls onto a slope slides until friction has braked
+    // it; so a box is turned under a block, about a line in its top.
     for (const double degrees : {24.0, 26.0}) {
         Simulation simulation = block_on_slope({});
         const auto step_to = [&](double seconds) {

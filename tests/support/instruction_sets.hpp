@@ -18,7 +18,7 @@ void under_each_instruction_set(const Body& body) {
     use_instruction_set(before);
 }
 
-/// What body() returns under an instruction set; the previous one is restored.
+/// The value that body() returns under an instruction set; the previous one is restored.
 template <typename Body>
 auto under_instruction_set(std::string_view name, const Body& body) {
     const std::string before(instruction_set());

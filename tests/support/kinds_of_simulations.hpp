@@ -24,9 +24,9 @@ struct KindOfSimulation {
     Deformable deformable;
     std::vector<Collider> colliders;
     SimulationOptions options;
-    /// What is set once, after it was made.
+    /// Sets, once after it was made, what options do not.
     std::function<void(Simulation&)> begin = [](Simulation&) {};
-    /// What a host does before each frame.
+    /// Steers it before each frame, as a host does.
     std::function<void(Simulation&)> steer = [](Simulation&) {};
 
     Simulation make(unsigned thread_count = 1) const {

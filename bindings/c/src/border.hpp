@@ -13,7 +13,7 @@
 #include <utility>
 #include <vector>
 
-/// What every function of the C interface does at the border: catch exceptions, check what the types of C
+/// Every function of the C interface does this at the border: catch exceptions, check what the types of C
 /// cannot rule out, and convert.
 namespace echinus::c {
 
@@ -147,7 +147,7 @@ void require_size(std::size_t size, std::size_t known_size, std::size_t first_si
 /// @throws WrongArgument when a byte after the known ones is set: a member that this library does not have
 void require_zero(const void* first, std::size_t known_size, std::size_t size, const char* name);
 
-/// What a later version may give a meaning, which this one would not heed.
+/// Refuses a value to which a later version may give a meaning, which this one would not heed.
 /// @throws WrongArgument unless it is 0
 template <typename Integer>
 void require_unused(Integer reserved) {

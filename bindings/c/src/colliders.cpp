@@ -40,7 +40,7 @@ std::vector<PoseKey> keys_from(std::span<const echinus_pose_key> keys) {
 
 namespace {
 
-/// What pose_at() takes for granted.
+/// Checks what pose_at() takes for granted.
 void require_valid(std::span<const echinus_pose_key> keys) {
     require(!keys.empty(), "there is no key");
     for (std::size_t i = 0; i < keys.size(); ++i) {

@@ -94,7 +94,7 @@ Deformable deformable_from(const echinus_deformable_arrays& arrays) {
     };
 }
 
-/// What is not there would be found in the next part.
+/// Refuses a vertex that is not there: it would be found in the next part.
 /// @throws Error InvalidOptions
 void require_own_particles(const Deformable& part, std::size_t number) {
     const auto require_there = [&](std::uint32_t particle, const char* what) {

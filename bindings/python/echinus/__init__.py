@@ -5,7 +5,7 @@ the shape ``(...)``. An array of type float32 whose points have their three coor
 in place, whatever the distance from one point to the next; others are converted to float32 first. Give the
 points of a map far from 0 as float64: they are made relative to its ``origin`` before.
 
-Functions that compute for long release Python's lock. What the C++ library refuses raises :class:`Error` with
+Functions that compute for long release Python's lock. A refusal of the C++ library raises :class:`Error` with
 its sentence; arrays of a wrong shape or type raise ``ValueError`` or ``TypeError``.
 """
 

@@ -113,7 +113,7 @@ def path_of(value: Any) -> str:
 
 
 def json_of(values: Mapping[str, Any]) -> str:
-    """What the library reads as JSON, which has no NaN, no infinity and no objects: these are refused by their keys."""
+    """Values as JSON for the library, which has no NaN, no infinity and no objects: these are refused by their keys."""
     return json.dumps(_plain("", values))
 
 

@@ -79,7 +79,7 @@ class ColliderState:
 
 
 class Load(NamedTuple):
-    """What bears on a collider, in the world's axes.
+    """The load on a collider, in the world's axes.
 
     Attributes
     ----------

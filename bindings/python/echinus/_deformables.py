@@ -1,4 +1,4 @@
-"""What moves and deforms: cloth, soft bodies, and several of them together."""
+"""Deformables: cloth, soft bodies, and several of them together."""
 
 from __future__ import annotations
 

@@ -24,7 +24,7 @@ bounds.
 
 
 class Error(Exception):
-    """What the library refuses.
+    """A refusal of the library.
 
     ``str(error)`` is one sentence that names the file, face, byte or frame at fault.
 

@@ -138,7 +138,7 @@ class SweepHits(_Answers):
 
 @dataclass(frozen=True)
 class ExactMapStatistics:
-    """What the build of an exact map found.
+    """The findings of the build of an exact map.
 
     Attributes
     ----------
@@ -166,7 +166,7 @@ class ExactMapStatistics:
 
 @dataclass(frozen=True)
 class DistanceMapStatistics:
-    """What the build of a distance map found.
+    """The findings of the build of a distance map.
 
     Attributes
     ----------
@@ -187,7 +187,7 @@ class DistanceMapStatistics:
 
 
 class _Map(Generic[CoreMap]):
-    """What both kinds of map can do. A map never changes; any number of threads may query it."""
+    """The queries of both kinds of map. A map never changes; any number of threads may query it."""
 
     _built: CoreMap
 
@@ -294,7 +294,7 @@ class ExactMap(_Map[_core.ExactMap]):
     budget
         The finest map that takes no more; 0: no limit. Not together with a number of cells (0 to 4e9 bytes).
     rule
-        What is inside where parts of the model overlap: their union, or where an odd number of them is.
+        The inside where parts of the model overlap: their union, or where an odd number of them is.
     centre
         Where rays start: the centre of the bounding sphere, or a place searched for short lists.
     threads
@@ -420,7 +420,7 @@ class ExactMap(_Map[_core.ExactMap]):
 
     @property
     def statistics(self) -> ExactMapStatistics:
-        """What the build found."""
+        """The findings of the build."""
         return ExactMapStatistics(**self._built.statistics)
 
 
@@ -439,7 +439,7 @@ class DistanceMap(_Map[_core.DistanceMap]):
     divisions
         Octahedral grid and cube: into how many parts each edge is cut (4 to 4096).
     correction
-        What is done about vertices between the samples.
+        How vertices between the samples are corrected for.
     entries
         How a distance is stored; ``unorm16`` takes half the bytes and is off by at most 7.6e-6 R, on octahedral and
         ellipsoidal grids 1.4e-5 R.
@@ -477,7 +477,7 @@ class DistanceMap(_Map[_core.DistanceMap]):
 
     @property
     def statistics(self) -> DistanceMapStatistics:
-        """What the build found."""
+        """The findings of the build."""
         return DistanceMapStatistics(**self._built.statistics)
 
 

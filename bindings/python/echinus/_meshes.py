@@ -185,7 +185,7 @@ def weld(mesh: MeshLike) -> Mesh:
 
 @dataclass(frozen=True)
 class RepairReport:
-    """What :func:`repair` did; faces by their numbers before it, and after those the ones that close holes.
+    """The changes that :func:`repair` made; faces by their numbers before it, and after those the ones that close holes.
 
     Attributes
     ----------

@@ -157,7 +157,7 @@ class Simulation:
         Nor do two faces of what deforms intersect; needs ``surface_collision``. By default as
         ``surface_collision``.
     untangle
-        What begins intersecting, or inside the model, is parted before the first frame instead of refused; needs
+        A start that intersects, or is inside the model, is parted before the first frame instead of refused; needs
         ``surface_collision``.
     density
         ``newton`` only, as the four that follow: mass of the cloth per area (1e-6 to 1e6 kg/m^2).
@@ -478,7 +478,7 @@ class Simulation:
         self._simulation.set_collider_cache(index("collider", collider), core)
 
     def load_on(self, collider: int) -> Load:
-        """What the deformables put on a model in the last frame, as its mean over the frame; 0 before the first.
+        """The load that the deformables put on a model in the last frame, as its mean over the frame; 0 before the first.
 
         By contact and friction, in N and N m; always 0 under ``jakobsen``. A host that moves a rigid body by it, and
         then the model by the body, exchanges momentum with the deformables.
@@ -533,7 +533,7 @@ def _chosen(given: bool | None, otherwise: bool) -> bool:
 
 
 def _one_for_each(model: _Model | Sequence[_Model], collider_count: int) -> list[_Model]:
-    """What is given in place of the model of each collider."""
+    """The files or meshes that are given in place of the model of each collider."""
     if model is None:
         return [None] * collider_count
     models = list(model) if isinstance(model, (list, tuple)) else [model]

@@ -115,7 +115,7 @@ def make_solid_box(
 
 @dataclass(frozen=True)
 class Tetrahedralization:
-    """What :func:`tetrahedralize` gives.
+    """The result of :func:`tetrahedralize`.
 
     Attributes
     ----------
@@ -143,7 +143,7 @@ def tetrahedralize(
     """Fills what an exact map says is inside with tetrahedra, by isosurface stuffing (Labelle and Shewchuk 2007).
 
     The boundary is closed, manifold, and does not intersect itself; the extreme dihedral angles that were found are
-    9.3 and 161.7 degrees. What is thinner than ``size`` is lost or torn. docs/tetrahedra.md has the method and what
+    9.3 and 161.7 degrees. A part thinner than ``size`` is lost or torn. docs/tetrahedra.md has the method and what
     it promises.
 
     Parameters
@@ -211,7 +211,7 @@ class TetrahedralReport:
     least_angle_deg, greatest_angle_deg
         Between two faces of a tetrahedron.
     boundary
-        What :func:`inspect` says of :func:`boundary`.
+        The report of :func:`inspect` on :func:`boundary`.
     """
 
     tetrahedron_count: int

@@ -36,7 +36,7 @@ Deformable soft_body(const py::array& vertices, const py::array_t<std::uint32_t>
 
 // ---- Pickles
 
-/// All that a deformable consists of, array by array. What takes it checks it as it checks any deformable.
+/// All that a deformable consists of, array by array. Whoever takes it checks it as it checks any deformable.
 template <typename Use>
 void for_each_part(const Use& use) {
     use(&Deformable::positions);

@@ -36,7 +36,7 @@ T numbers(const char* name, const std::string& wanted, const py::handle& given) 
 /// Neither texts nor numbers with a point become whole numbers.
 template <typename T>
 T whole(const char* name, const py::handle& given) {
-    // What C++ may also have as the difference of two sizes.
+    // Not more than C++ may also have as the difference of two sizes.
     constexpr std::uint64_t kMost = std::min<std::uint64_t>(std::numeric_limits<T>::max(), INT64_MAX);
     const std::string wanted = "a whole number from 0 to " + std::to_string(kMost);
     if (PyIndex_Check(given.ptr()) == 0) throw py::type_error(sentence(name, wanted, given));

@@ -86,8 +86,8 @@ TetrahedralMesh read_body(const SceneBody& body, const std::filesystem::path& pa
     return fill_body(body, read_mesh(path));
 }
 
-/// What the scene's simulation takes besides the scene. None where the scene does not name a file, and for
-/// colliders without a cache.
+/// The files that the scene's simulation takes besides the scene. None where the scene does not name a file,
+/// and for colliders without a cache.
 std::unique_ptr<SharedSimulation>
 simulation_of_scene(const Scene& scene, const std::vector<ColliderMap>& maps,
                     const std::vector<std::optional<VertexCache>>& model_caches,

@@ -211,7 +211,7 @@ export class Mesh extends Deletable {
 }
 
 export type Repair = 'duplicate_faces' | 'doubled_patches' | 'inside_out' | 'seams' | 'slivers' | 'orientation';
-/** What a scene may do besides. */
+/** Repairs that only a scene may ask for. */
 export type MakeSolid = 'small_holes' | 'inner_faces' | 'sheets';
 
 export interface Fault {
@@ -252,7 +252,7 @@ export interface RepairReport {
     duplicateFacesDropped: number;
     doubledPatchFacesDropped: number;
     componentsFlipped: number;
-    /** What only a scene may ask for; 0 otherwise. */
+    /** Only a scene may ask for these; 0 otherwise. */
     holesClosed: number;
     holesLeft: number;
     innerFacesDropped: number;
@@ -285,7 +285,7 @@ export interface ExactMapOptions {
      */
     budget?: number;
     /**
-     * What is inside where parts of the model overlap: their union, or where an odd number of them is. Default:
+     * The inside where parts of the model overlap: their union, or where an odd number of them is. Default:
      * `"nonzero"`.
      */
     rule?: 'nonzero' | 'parity';
@@ -304,7 +304,7 @@ export interface DistanceMapOptions {
     directions?: readonly [number, number];
     /** Octahedral grid and cube: into how many parts each edge is cut (4 to 4096). Default: 100. */
     divisions?: number;
-    /** What is done about vertices between the samples. Default: `"signed"`. */
+    /** How vertices between the samples are corrected for. Default: `"signed"`. */
     correction?: 'none' | 'paper' | 'signed';
     /**
      * How a distance is stored; `unorm16` takes half the bytes and is off by at most 7.6e-6 R, on octahedral and
@@ -611,7 +611,7 @@ export interface SceneDescription {
     /** Nor do two faces of what deforms intersect; needs `surface_collision`. Default: as `surface_collision`. */
     self_collision?: boolean;
     /**
-     * What begins intersecting, or inside the model, is parted before the first frame instead of refused; needs
+     * A start that intersects, or is inside the model, is parted before the first frame instead of refused; needs
      * `surface_collision`. Default: false.
      */
     untangle?: boolean;

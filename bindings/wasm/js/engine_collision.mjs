@@ -1,6 +1,6 @@
 import { refuse } from './errors.mjs';
 
-/** What the adapters to engines have in common: a collision whose colliders follow rigid bodies of the engine. */
+/** Common to the adapters to engines: a collision whose colliders follow rigid bodies of the engine. */
 export class EngineCollision {
     #collision;
     #followers;

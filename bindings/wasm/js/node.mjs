@@ -10,7 +10,7 @@ export async function load(source = new URL('./echinus.wasm', import.meta.url)) 
     return loadFrom(path === undefined ? given : read(path));
 }
 
-/** What readFile() takes, where the source is a file. */
+/** The argument for readFile(), where the source is a file. */
 function pathOf(source) {
     if (typeof source === 'string') return /^(https?|data|blob):/i.test(source) ? undefined : /^file:/i.test(source) ? new URL(source) : source;
     return source instanceof URL && source.protocol === 'file:' ? source : undefined;

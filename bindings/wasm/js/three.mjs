@@ -62,7 +62,8 @@ const CELLS = 1e4; // to the largest coordinate: a place is rarely so near to an
 
 /**
  * Gives each corner the first vertex at its place. A geometry has a vertex for each normal and texture coordinate, and where
- * its shape closes, those of its beginning and its end differ by rounding. What is no vertex or no place stays, to be refused.
+ * its shape closes, those of its beginning and its end differ by rounding. An index without a vertex
+ * and a vertex that is no place stay, to be refused.
  */
 function join(corners, vertices) {
     const used = [...Uint32Array.from(new Set(corners)).sort()].filter((i) => 3 * i < vertices.length);

@@ -39,7 +39,7 @@ Vec3f send(Simulation& simulation, std::size_t particle, const Vec3f& from, cons
     return from + (from - simulation.deformable().previous_positions[particle]);
 }
 
-/// What is left of a particle's motion in a step after an impact: nothing into the surfaces that it touches.
+/// The rest of a particle's motion in a step after an impact: nothing into the surfaces that it touches.
 /// The motion of the step itself still has its way to the surface in it.
 Vec3d without_approach(const Simulation& simulation, const Vec3f& position, Vec3d motion) {
     const float reach = 2 * static_cast<float>(*simulation.options().thickness);

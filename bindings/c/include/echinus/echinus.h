@@ -8,17 +8,17 @@
 
 /// Echinus for C99 and for whatever calls C. Library libechinus-c; docs/c.md begins with a whole program.
 ///
-/// Errors. What can fail returns a status, and echinus_last_error() has a sentence about it. No exception
-/// crosses this border. A function that fails sets the handle that it would have made to NULL, and changes
-/// nothing else unless its declaration says so.
+/// Errors. A function that can fail returns a status, and echinus_last_error() has a sentence about it. No
+/// exception crosses this border. A function that fails sets the handle that it would have made to NULL, and
+/// changes nothing else unless its declaration says so.
 ///
 /// Null pointers. An argument that is NULL is ECHINUS_INVALID_ARGUMENT, unless its declaration says "or
 /// NULL". An array of 0 elements may be NULL. The functions that end in _destroy take NULL and do nothing.
 /// Functions that return a value and no status return 0 or NULL for a handle that is NULL.
 ///
 /// Ownership. A handle that a function gives through an echinus_..._ ** belongs to the caller, who destroys
-/// it once by the _destroy of its type. What a function takes as const it reads during the call and does not
-/// keep, unless its declaration says so. What it returns as a pointer belongs to the handle that was asked.
+/// it once by the _destroy of its type. A function reads during the call what it takes as const, and does not
+/// keep it, unless its declaration says so. A pointer that it returns belongs to the handle that was asked.
 ///
 /// Threads. Meshes, maps, tetrahedra, deformables, scenes and arrays never change: any number of threads may
 /// use one at once. A builder and a simulation are for one thread at a time. thread_count is how many threads
@@ -57,7 +57,7 @@ extern "C" {
 
 // ---- Errors and the library ----
 
-/// What went wrong. Values are only ever added.
+/// The kinds of errors. Values are only ever added.
 typedef enum echinus_status {
     ECHINUS_OK = 0,
     ECHINUS_UNREADABLE = 1,          ///< a file does not exist, is a directory, or cannot be read
@@ -325,7 +325,7 @@ typedef struct echinus_exact_map_options {
     uint32_t thread_count;
     /// The finest map that takes no more; 0: no limit. Not together with a number of cells (0 to 4e9 bytes)
     uint64_t byte_budget;
-    /// What is inside where parts of the model overlap: their union, or where an odd number of them is
+    /// The inside where parts of the model overlap: their union, or where an odd number of them is
     echinus_inside_rule rule;
     /// Where rays start: the centre of the bounding sphere, or a place searched for short lists
     echinus_centre_choice centre;
@@ -356,7 +356,7 @@ typedef enum echinus_direction_grid {
     ECHINUS_GRID_ELLIPSOIDAL = 3
 } echinus_direction_grid;
 
-/// What is done about vertices that linear interpolation between samples misses.
+/// How vertices that linear interpolation between samples misses are corrected for.
 typedef enum echinus_vertex_correction {
     ECHINUS_CORRECTION_NONE = 0,
     ECHINUS_CORRECTION_PAPER = 1,
@@ -387,7 +387,7 @@ typedef struct echinus_distance_map_options {
     uint32_t colatitude_count;
     /// Octahedral grid and cube: into how many parts each edge is cut (4 to 4096)
     uint32_t divisions;
-    /// What is done about vertices between the samples
+    /// How vertices between the samples are corrected for
     echinus_vertex_correction correction;
     /// How a distance is stored; unorm16 takes half the bytes and is off by at most 7.6e-6 R, on octahedral
     /// and ellipsoidal grids 1.4e-5 R
@@ -441,7 +441,7 @@ typedef struct echinus_exact_map_statistics {
     uint32_t reserved;          ///< 0
 } echinus_exact_map_statistics;
 
-/// What the build of an exact map found.
+/// The findings of the build of an exact map.
 ECHINUS_API echinus_status echinus_map_exact_statistics(const echinus_map* map,
                                                         echinus_exact_map_statistics* statistics);
 
@@ -455,7 +455,7 @@ typedef struct echinus_distance_map_statistics {
     float wrong_parity_share;   ///< of directions that see a hole; 0 when the mesh is closed
 } echinus_distance_map_statistics;
 
-/// What the build of a distance map found.
+/// The findings of the build of a distance map.
 ECHINUS_API echinus_status echinus_map_distance_statistics(const echinus_map* map,
                                                            echinus_distance_map_statistics* statistics);
 
@@ -774,7 +774,7 @@ ECHINUS_API echinus_status echinus_tetrahedra_create(const float* vertices, size
                                                      size_t vertex_stride, const uint32_t* tetrahedra,
                                                      size_t tetrahedron_count, echinus_tetrahedra** body);
 
-/// What was changed for a file's body to be valid.
+/// The changes made for a file's body to be valid.
 typedef struct echinus_tetrahedra_file_report {
     size_t size;
     uint64_t turned_tetrahedra; ///< that were negative: the order of corners is a file's convention
@@ -943,7 +943,7 @@ typedef struct echinus_elastic_tetrahedron {
 /// Particles and what holds them together, in world units.
 typedef struct echinus_deformable echinus_deformable;
 
-/// What a deformable is made of, as arrays.
+/// The parts of a deformable, as arrays.
 typedef struct echinus_deformable_arrays {
     size_t size;
     size_t particle_count;
@@ -1029,7 +1029,7 @@ ECHINUS_API echinus_status echinus_deformable_cloth_of_mesh(const echinus_mesh* 
                                                             echinus_deformable** deformable);
 
 // Options: soft_body. By bindings/generate_options from bindings/options.toml: edit that.
-/// What a soft body is made of, and where it starts; in SI units with metres, kilograms and seconds.
+/// The matter of a soft body, and where it starts; in SI units with metres, kilograms and seconds.
 typedef struct echinus_soft_body_options {
     size_t size;
     /// Water has 1000 kg/m^3 (1e-9 to 1e15 mass/length^3)
@@ -1099,7 +1099,7 @@ typedef enum echinus_solver {
 #define ECHINUS_THICKNESS_CHOSEN (-1.0)
 
 // Options: simulation. By bindings/generate_options from bindings/options.toml: edit that.
-/// What each member costs: SimulationOptions in simulation.hpp.
+/// SimulationOptions in simulation.hpp tells how much each member costs.
 typedef struct echinus_simulation_options {
     size_t size;
     /// Seconds per frame. The paper's solver needs smaller ones: half of it takes twice the time there and
@@ -1149,7 +1149,7 @@ typedef struct echinus_simulation_options {
     int32_t surface_collision;
     /// Nor do two faces of what deforms intersect; needs surface_collision
     int32_t self_collision;
-    /// What begins intersecting, or inside the model, is parted before the first frame instead of refused;
+    /// A start that intersects, or is inside the model, is parted before the first frame instead of refused;
     /// needs surface_collision
     int32_t untangle;
     /// Threads that compute a frame; 0: all cores. The same bits with any number (0 to 1024)
@@ -1310,8 +1310,8 @@ ECHINUS_API echinus_status echinus_simulation_set_collider_vertices(echinus_simu
 ECHINUS_API echinus_status echinus_simulation_set_collider_cache(echinus_simulation* simulation, size_t index,
                                                                  const echinus_vertex_cache* cache);
 
-/// What the deformable put on a collider in the last frame by contact and friction, as its mean over the
-/// frame; 0 before the first, and always under ECHINUS_SOLVER_JAKOBSEN.
+/// The load that the deformable put on a collider in the last frame by contact and friction, as its mean over
+/// the frame; 0 before the first, and always under ECHINUS_SOLVER_JAKOBSEN.
 /// @param force   [3] out, N
 /// @param torque  [3] out, N m, about where the pose's translation was when the frame began
 ECHINUS_API echinus_status echinus_simulation_load_on(const echinus_simulation* simulation, size_t index,

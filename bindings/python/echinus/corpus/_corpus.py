@@ -1,4 +1,4 @@
-"""What a run is about: meshes, how they are labelled, and to where."""
+"""The matter of a run: meshes, how they are labelled, and to where."""
 
 from __future__ import annotations
 
@@ -20,12 +20,12 @@ UNFINISHED = ".unfinished"  # in the output folder: locks, and files that are be
 
 @dataclass(frozen=True)
 class Corpus:
-    """What is labelled, how, and to where.
+    """Meshes to label, how, and to where.
 
     Attributes
     ----------
     meshes
-        What :func:`find_meshes` gives, in any order.
+        The result of :func:`find_meshes`, in any order.
     output
         The folder of the labels; all workers see it under this name.
     form

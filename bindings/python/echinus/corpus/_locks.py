@@ -1,6 +1,6 @@
 """Runs do not write the same labels at once.
 
-The locks go with the process, however it ends. What it has not finished goes with :func:`unfinished_files`, or with those
+The locks go with the process, however it ends. Files that it has not finished go with :func:`unfinished_files`, or with those
 of the next run.
 """
 

@@ -63,7 +63,7 @@ class Manifest:
 
         complete = [task for task in tasks if is_complete(task)]
         meshes = [mesh for task in complete for mesh in task.meshes]
-        # What cannot be read now keeps the labels that it has.
+        # A mesh that cannot be read now keeps the labels that it has.
         changed = {mesh for mesh, change in changes_of(meshes, record_of, self.settings["max_bytes"], progress) if change == "changed"}
         finished = {task.meshes for task in complete if changed.isdisjoint(task.meshes)}
         return [task for task in tasks if task.meshes in finished], [task for task in tasks if task.meshes not in finished]

@@ -22,7 +22,7 @@ from echinus.corpus._tasks import Record, Task
 
 @dataclass
 class Summary:
-    """What a run did.
+    """The result of a run.
 
     Attributes
     ----------

@@ -139,7 +139,7 @@ class Samples:
     loc, scale
         point_in_frame = (point - loc) / scale
     report
-        What is known about the mesh and its labels.
+        All that is known about the mesh and its labels.
     """
 
     points: NDArray[np.floating[Any]]

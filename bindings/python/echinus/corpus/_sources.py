@@ -33,7 +33,7 @@ def find_meshes(sources: Path | Sequence[Path]) -> list[Mesh]:
     Raises
     ------
     FileNotFoundError
-        A source does not exist. What a list names may be missing: it is refused like a broken mesh.
+        A source does not exist. A file that a list names may be missing: it is refused like a broken mesh.
     OSError
         A folder cannot be read.
     ValueError

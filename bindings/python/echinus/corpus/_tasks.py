@@ -1,4 +1,4 @@
-"""What a worker does: one task, whose meshes become the files of a folder or the members of one archive."""
+"""The work of a worker: one task, whose meshes become the files of a folder or the members of one archive."""
 
 from __future__ import annotations
 

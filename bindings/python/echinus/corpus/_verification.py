@@ -1,4 +1,4 @@
-"""What is wrong with the labels of a corpus."""
+"""Finds faults in the labels of a corpus."""
 
 from __future__ import annotations
 
@@ -20,12 +20,12 @@ from echinus.corpus._tasks import Record
 
 @dataclass(frozen=True)
 class Findings:
-    """What is there of the labels of a corpus.
+    """How much there is of the labels of a corpus.
 
     Attributes
     ----------
     complaints
-        What is wrong with its labels.
+        The fault of its labels.
     surplus
         Files that belong to no mesh with labels, for instance because their mesh was taken out of the corpus.
     refused, again
@@ -52,7 +52,7 @@ class Findings:
 
 
 def verify(corpus: Corpus) -> list[str]:
-    """What is wrong with the labels in a folder, and which files there belong to no labelled mesh; nothing, if each mesh
+    """The faults of the labels in a folder, and the files there that belong to no labelled mesh; nothing, if each mesh
     was refused or has its labels once, with the bytes of the manifests."""
     return examine(corpus).sentences()
 
