@@ -63,7 +63,7 @@ struct DistanceMapOptions {
     unsigned thread_count = 0; ///< 0: all cores. The bytes of the map do not depend on it.
 };
 
-/// What the build found. Stored with the map.
+/// Findings of the build, stored with the map.
 struct DistanceMapStatistics {
     std::uint32_t face_count = 0; ///< of the mesh
     std::uint32_t dropped_faces =

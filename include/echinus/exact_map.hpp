@@ -51,7 +51,7 @@ struct ExactMapOptions {
     unsigned thread_count = 0; ///< 0: all cores. The bytes of the map do not depend on it.
 };
 
-/// What the build found. Stored with the map.
+/// Findings of the build, stored with the map.
 struct ExactMapStatistics {
     std::uint32_t face_count = 0; ///< of the mesh
     /// Faces with two corners on one point of the lattice, where they have no area: they count for distances

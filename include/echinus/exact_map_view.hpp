@@ -124,7 +124,7 @@ struct ExactMapView {
     IndexArray face_numbers;            ///< [face_count] each face's number in the mesh
     std::span<const TreeNode> nodes;    ///< the first is the root
     std::span<const BorderEdge> border; ///< empty when the surface is closed
-    /// What queries of an open surface sum: its faces, or caps that close it, where they are far fewer
+    /// Queries of an open surface sum these: its faces, or caps that close it, where they are far fewer
     /// (src/exact_map/query/winding.cpp). Empty when the surface is closed. Not in map files, as it follows
     /// from the faces.
     WindingTree winding_tree;

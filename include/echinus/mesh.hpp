@@ -149,7 +149,7 @@ struct RepairOptions {
     }
 };
 
-/// What repair() did; face numbers of the input mesh, ascending. Faces that close holes have the numbers
+/// The work of repair(); face numbers of the input mesh, ascending. Faces that close holes have the numbers
 /// after those.
 struct RepairReport {
     std::vector<std::uint32_t> duplicate_faces_dropped;

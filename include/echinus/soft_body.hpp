@@ -14,7 +14,7 @@ ECHINUS_EXPORT_BEGIN
 /// Soft bodies: organs, rubber, dough. docs/soft_bodies.md has the method, its limits and what was measured.
 namespace echinus {
 
-/// What a soft body is made of, and where it starts. The numbers are in any units that fit together; with
+/// The material of a soft body, and where it starts. The numbers are in any units that fit together; with
 /// metres and kilograms they are SI units, and gravity is -9.81.
 struct SoftBodyOptions {
     double density = 1000;      ///< mass / length^3, of water in kg/m^3; positive

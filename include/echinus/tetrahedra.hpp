@@ -57,7 +57,7 @@ TetrahedralMesh make_solid_box(const Vec3d& size, const std::array<std::uint32_t
 
 struct TetrahedralizeOptions {
     /// The edge of the lattice's cubes, in the model's unit: the longest edges inside the body; at the
-    /// boundary some are half as long again. What is thinner than that is lost or torn. Either this or
+    /// boundary some are half as long again. Thinner parts are lost or torn. Either this or
     /// `count` is positive, the other 0.
     double size = 0;
     /// About so many tetrahedra: the size is found by trying, within 5 % where the model lets it; each try
@@ -74,7 +74,7 @@ struct TetrahedralizeOptions {
     static constexpr std::size_t kMaxLatticeVertices = std::size_t{1} << 28U;
 };
 
-/// What tetrahedralize() gives.
+/// The result of tetrahedralize().
 struct Tetrahedralization {
     TetrahedralMesh mesh; ///< valid; every vertex is used
     double size = 0;      ///< of the lattice

@@ -525,7 +525,7 @@ class NodeKeeper {
         return collider_.to_world(carried);
     }
 
-    /// What Coulomb's friction takes of a way along the surface, after a push of this length.
+    /// A way along the surface, less what Coulomb's friction takes of it, after a push of this length.
     Vec3f rubbed(const Vec3f& way, const Vec3f& normal, float push) const {
         const Vec3f slip = way - normal * dot(normal, way);
         const float size = length(slip);
@@ -623,7 +623,7 @@ class Solver : public btDefaultSoftBodySolver {
     /// Bullet itself sets the boxes of soft bodies in it.
     btBroadphaseInterface& broadphase() const { return *m_softBodySet[0]->getWorldInfo()->m_broadphase; }
 
-    /// What one collider pushed, another may have to push back.
+    /// A particle that one collider pushed, another may have to push back.
     void keep_outside(btSoftBody& body) {
         const PlacedShape* alone = nullptr; // in the pass before
         for (int pass = 0; pass < kMostPasses; ++pass) {
