@@ -71,8 +71,9 @@ struct Deformable {
     /// A particle of theirs that is in no face lies inside: those around it collide, and it does not.
     std::vector<ElasticTetrahedron> tetrahedra{};
     std::vector<CollisionFilter> filters{}; ///< in any order
-    /// [particle_count] The shape at rest, in any place and pose; empty: as it begins. Newton's cloth has its
-    /// strain and its angles from it; sticks have their lengths themselves.
+    /// [particle_count] The shape at rest, in any place and pose; empty: as it begins, which a simulation
+    /// writes here. Newton's cloth has its strain and its angles from it; sticks have their lengths
+    /// themselves.
     std::vector<Vec3f> rest_positions{};
 
     std::size_t particle_count() const { return positions.size(); }
@@ -248,7 +249,7 @@ struct SimulationOptions {
     double wind_rate = 0; ///< per second
 };
 
-/// What bears on a collider, in the world's axes.
+/// A force and a torque that bear on a collider, in the world's axes.
 struct Load {
     Vec3d force;  ///< N
     Vec3d torque; ///< N m, about where the pose's translation was when the frame began
@@ -277,9 +278,10 @@ struct SimulationProfile {
     std::uint64_t truncated_count = 0;
     /// With surface_collision: pairs of a vertex and a face or of two edges that were measured.
     std::uint64_t measured_pair_count = 0;
-    /// Times that no place for a particle was proven: a pinned particle was led through something, or
-    /// colliders left no room between them. While it is 0, no faces intersect at the end of a frame, but for
-    /// rounding, which is not counted, hundreds of a collider's radii from the origin (docs/surfaces.md).
+    /// With surface_collision: pairs of a vertex and a face or of two edges for which no room was proven when
+    /// a step began, summed over all steps: a pinned particle was led through something, or colliders left no
+    /// room between them. While it is 0, no faces intersect at the end of a frame, but for rounding, which is
+    /// not counted, hundreds of a collider's radii from the origin (docs/surfaces.md).
     std::uint64_t squeezed_count = 0;
 };
 

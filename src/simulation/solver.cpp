@@ -61,6 +61,8 @@ Deformable valid_start(Deformable deformable, const std::vector<Collider>& colli
     require_valid(colliders, options);
     require_valid_attachments(deformable, colliders.size());
     require_valid_filters(deformable, colliders.size());
+    // So that what is read of it later is whole, and that nothing that is parted stays stretched.
+    if (deformable.rest_positions.empty()) deformable.rest_positions = deformable.positions;
     if (options.untangle)
         untangle(deformable, with_unit_rotations(colliders), with_thickness(options, deformable));
     return deformable;

@@ -127,6 +127,15 @@ void require_valid(const Deformable& deformable) {
         if (!is_within_reach(deformable.positions[i]))
             fail("particle " + std::to_string(i) + " begins farther than 1e15 from the origin along an axis");
     }
+    const std::vector<Vec3f>& rest = deformable.rest_positions;
+    if (!rest.empty() && rest.size() != count)
+        fail("the deformable has " + std::to_string(count) + " positions and " + std::to_string(rest.size()) +
+             " rest positions; it needs as many, or none where it begins at rest");
+    for (std::size_t i = 0; i < rest.size(); ++i)
+        if (!is_finite(rest[i]) || !is_within_reach(rest[i]))
+            fail("particle " + std::to_string(i) +
+                 " has a rest position that is not finite, or farther than 1e15 from the origin along an "
+                 "axis");
     for (std::size_t i = 0; i < deformable.sticks.size(); ++i) {
         const Stick& stick = deformable.sticks[i];
         if (stick.a >= count || stick.b >= count || stick.a == stick.b)

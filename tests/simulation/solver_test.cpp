@@ -56,6 +56,22 @@ TEST(Solver, LosesNothingOfGravityWhereverAParticleHasComeTo) {
     EXPECT_NEAR(double{simulation.positions()[0].x - before}, 1000 - 9.81 * 2.5, 0.1);
 }
 
+TEST(Solver, TellsTheShapeAtRestOfWhatItHasStretched) {
+    ClothOptions sheet{.column_count = 3, .row_count = 9, .width = 0.2, .pins = {24, 25, 26}};
+    sheet.pose.rotation = Rotation::about({1, 0, 0}, std::acos(0.0));
+    const Deformable cloth = make_cloth(sheet);
+    SimulationOptions options;
+    options.material.stretch_stiffness = 10; // so that it hangs by a tenth longer
+    Simulation first(cloth, {}, options);
+    for (int i = 0; i < 240; ++i) first.step();
+    EXPECT_EQ(first.deformable().rest_positions, cloth.positions);
+    EXPECT_LT(first.positions()[1].z, cloth.positions[1].z - 0.05F);
+    // Another simulation of it goes on with the same material, which is stretched already.
+    Simulation second(first.deformable(), {}, options);
+    for (int i = 0; i < 240; ++i) second.step();
+    EXPECT_NEAR(second.positions()[1].z, first.positions()[1].z, 0.01);
+}
+
 TEST(Solver, TakesTheDragFromTheVelocityInEveryFrame) {
     const SimulationOptions options = test::jakobsen({.time_step = 0.01, .gravity = {}, .drag = 0.1});
     Simulation simulation(single_particle({}, {1, 0, 0}), {}, options);

@@ -177,6 +177,15 @@ TEST(SimulationSetUp, NamesTheParticleStickOrFaceAtFault) {
     expect_names(refusal([](Deformable& d, auto&) { d = {}; }), "no particles");
 }
 
+TEST(SimulationSetUp, RefusesARestShapeThatIsNotOfItsParticles) {
+    const auto with_rest = [](const std::vector<Vec3f>& rest) {
+        return refusal([&](Deformable& cloth, SimulationOptions&) { cloth.rest_positions = rest; });
+    };
+    expect_names(with_rest(std::vector<Vec3f>(8)), "9 positions and 8 rest positions");
+    const float infinity = std::numeric_limits<float>::infinity();
+    expect_names(with_rest({{}, {}, {}, {infinity, 0, 0}, {}, {}, {}, {}, {}}), "particle 3");
+}
+
 TEST(SimulationSetUp, RefusesSurfaceOptionsThatContradictEachOther) {
     const auto refuses = [](const SimulationOptions& options, const std::string& words) {
         test::expect_error(ErrorCode::InvalidOptions, words,

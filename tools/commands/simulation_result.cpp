@@ -1,37 +1,17 @@
 #include "commands/simulation_result.hpp"
 
+#include "commands/strain.hpp"
+
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <variant>
 #include <vector>
 
 using namespace echinus;
 
 namespace {
-
-/// How far the structural sticks are from their rest length, as a share of it.
-struct Strain {
-    double mean = 0;
-    double percentile_99 = 0; ///< of 100 sticks 99 have no more
-    double largest = 0;
-};
-
-Strain strain_of(const Deformable& deformable) {
-    std::vector<double> shares;
-    for (const Stick& stick : deformable.sticks) {
-        if (stick.kind != StickKind::Structural) continue;
-        const double distance = length(deformable.positions[stick.b] - deformable.positions[stick.a]);
-        shares.push_back(std::abs(distance / stick.rest_length - 1));
-    }
-    if (shares.empty()) return {};
-    std::sort(shares.begin(), shares.end());
-    return {.mean = std::accumulate(shares.begin(), shares.end(), 0.0) / static_cast<double>(shares.size()),
-            .percentile_99 = shares[(shares.size() - 1) * 99 / 100],
-            .largest = shares.back()};
-}
 
 /// Elements of less than a twentieth of their volume at rest, or inside out.
 std::size_t count_crushed(const Deformable& deformable) {
@@ -114,6 +94,11 @@ Json json_of(const ContactGap& gap) {
     return {{"particles", gap.particle_count}, {"mean", gap.mean}, {"least", gap.least}};
 }
 
+Json json_of(const std::optional<Strain>& strain) {
+    if (!strain) return {{"mean", nullptr}, {"percentile_99", nullptr}, {"largest", nullptr}};
+    return {{"mean", strain->mean}, {"percentile_99", strain->percentile_99}, {"largest", strain->largest}};
+}
+
 Json json_of(const WorstFrame& worst) {
     Json frame = nullptr;
     if (worst.pair_count != 0) frame = worst.frame;
@@ -179,7 +164,8 @@ Json to_json(const SimulationResult& result) {
     const SimulationOptions& options = simulation.options();
     const Deformable& deformable = simulation.deformable();
     const Rates rates = rates_of(simulation);
-    const Strain strain = strain_of(deformable);
+    Json strain = json_of(material_strain(deformable));
+    strain.add("edges", json_of(edge_strain(deformable)));
     const double radius = radius_of(result.colliders);
     const ColliderResult& first = result.colliders.front();
     const double thickness = options.thickness.value();
@@ -217,8 +203,7 @@ Json to_json(const SimulationResult& result) {
         {"self_intersecting_pairs", result.verdict.pairs.own},
         {"worst_frames", json_of(result.worst)},
         {"contact_gap", json_of(result.verdict.gap)},
-        {"strain",
-         {{"mean", strain.mean}, {"percentile_99", strain.percentile_99}, {"largest", strain.largest}}},
+        {"strain", strain},
         {"largest_speed", simulation.largest_speed()},
         {"thickness", thickness},
         {"thickness_in_radii", thickness / radius},
@@ -242,12 +227,17 @@ std::string text_of_solver(const SimulationOptions& options) {
     return fmt::format("jakobsen, {} relaxations per frame", options.iteration_count);
 }
 
+std::string text_of(const std::optional<Strain>& strain) {
+    if (!strain) return "none: there is no material";
+    return percent(strain->mean) + " mean, " + percent(strain->percentile_99) + " 99th percentile, " +
+           percent(strain->largest) + " largest";
+}
+
 } // namespace
 
 std::string to_text(const SimulationResult& result) {
     const Simulation& simulation = result.simulation;
     const Rates rates = rates_of(simulation);
-    const Strain strain = strain_of(simulation.deformable());
     const std::size_t particle_count = simulation.deformable().particle_count();
     const double radius = radius_of(result.colliders);
     std::string text = result.scene_name + "\n";
@@ -291,8 +281,7 @@ std::string to_text(const SimulationResult& result) {
         add("in the worst frame",
             fmt::format("{} with {}, {} of its own, in {} frames", result.worst->with_models.pair_count,
                         models, result.worst->own.pair_count, result.worst->judged_count));
-    add("strain", percent(strain.mean) + " mean, " + percent(strain.percentile_99) + " 99th percentile, " +
-                      percent(strain.largest) + " largest");
+    add("strain", text_of(material_strain(simulation.deformable())));
     add("state hash", fmt::format("{:016x}", simulation.state_hash()));
     return text;
 }

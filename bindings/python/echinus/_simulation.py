@@ -80,7 +80,7 @@ class SimulationProfile:
     measured_pair_count
         The work of surface collision.
     squeezed_count
-        Times that there was no place for a particle. Only then faces may intersect.
+        Pairs of parts of faces for which no room was proven, summed over all steps. Only then faces may intersect.
     """
 
     integration_seconds: float

@@ -508,7 +508,7 @@ export class Collision extends Deletable {
     readonly velocities: Float32Array;
     /** The particles that the last correct() moved, ascending. */
     readonly corrected: Uint32Array;
-    /** With `surfaces`: how often no place for a particle was proven. Only then may faces intersect: 0. */
+    /** With `surfaces`: pairs of parts of faces for which no room was proven. Only then may faces intersect: 0. */
     readonly squeezedCount: number;
 
     /**
@@ -859,7 +859,7 @@ export interface SimulationProfile {
     truncatedCount: number;
     /** Work of surface_collision: pairs of parts of faces that were measured. */
     measuredPairCount: number;
-    /** How often no place for a particle was proven. Only then may faces intersect: 0. */
+    /** Pairs of parts of faces for which no room was proven, summed over all steps. Only then may faces intersect: 0. */
     squeezedCount: number;
 }
 
