@@ -6,7 +6,9 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <cstdio>
 #include <fstream>
+#include <sstream>
 #include <vector>
 
 namespace fs = std::filesystem;
@@ -24,18 +26,19 @@ class SimulateCommand : public CommandLineTest {
     }
 
     /// With an exact map no particle is inside at rest, or ever was.
-    void expect_none_inside(const std::string& scene) const {
-        const nlohmann::json report = simulate((kSource / "scenes" / scene).string());
+    void expect_none_inside(const std::string& scene, const std::vector<std::string>& options = {}) const {
+        const nlohmann::json report = simulate((kSource / "scenes" / scene).string(), options);
         EXPECT_EQ(report.at("map_kind"), "exact");
         EXPECT_FALSE(report.at("frames_to_rest").is_null());
         EXPECT_EQ(report.at("inside_at_rest"), 0);
         EXPECT_EQ(report.at("lost_count"), 0);
     }
 
-    /// Runs one of the scenes that ship until it rests. The hash covers every bit of the last two frames;
-    /// update it here after an intended change of a map or the solver.
+    /// Runs one of the scenes that ship, with 900 particles, until it rests. The hash covers every bit of the
+    /// last two frames; update it here after an intended change of a map or the solver.
     void expect_rest(const std::string& scene, const std::string& state_hash) const {
-        const nlohmann::json report = simulate((kSource / "scenes" / scene).string());
+        const nlohmann::json report = simulate((kSource / "scenes" / scene).string(), {"--particles", "900"});
+        EXPECT_EQ(report.at("particles"), 900);
         EXPECT_EQ(report.at("state_hash"), state_hash);
         EXPECT_FALSE(report.at("frames_to_rest").is_null());
         EXPECT_LE(report.at("inside_at_rest").get<double>(), 0.01 * report.at("particles").get<double>());
@@ -74,7 +77,7 @@ TEST_F(SimulateCommand, LeavesNoParticleOfTheSmallClothInsideTheTorus) {
 TEST_F(SimulateCommand, LeavesNoParticleOfTheSmallClothInsideTheHorse) {
     if (!fs::exists(kSource / "models" / "horse.3ds"))
         GTEST_SKIP() << "models/horse.3ds is not there; scripts/setup fetches it";
-    expect_none_inside("horse_small.json");
+    expect_none_inside("horse.json", {"--particles", "900"});
 }
 
 TEST_F(SimulateCommand, LeavesNoParticleOfTheBagInsideTheTorus) {
@@ -91,8 +94,9 @@ TEST_F(SimulateCommand, LosesNoParticleOfTheFlagToItsPole) {
 
 TEST_F(SimulateCommand, LosesNoParticleToAThinPlateThatMovesAndTurns) {
     // As the scene has it, but by the paper's method.
-    nlohmann::json scene = nlohmann::json::parse(std::ifstream(kSource / "scenes" / "thin_plate_small.json"),
-                                                 nullptr, true, true);
+    nlohmann::json scene =
+        nlohmann::json::parse(std::ifstream(kSource / "scenes" / "thin_plate.json"), nullptr, true, true);
+    scene["cloth"]["particles"] = {30, 30};
     scene["solver"] = "jakobsen";
     scene["frame_limit"] = 240;
     write("plate.json", scene.dump());
@@ -103,13 +107,13 @@ TEST_F(SimulateCommand, LosesNoParticleToAThinPlateThatMovesAndTurns) {
 }
 
 TEST_F(SimulateCommand, DrapesTheSmallClothOnTheTorusAsEverBefore) {
-    expect_rest("torus_small_distance.json", "f3498d172f2c8992");
+    expect_rest("torus_distance.json", "f3498d172f2c8992");
 }
 
 TEST_F(SimulateCommand, DrapesTheSmallClothOnTheHorseAsEverBefore) {
     if (!fs::exists(kSource / "models" / "horse.3ds"))
         GTEST_SKIP() << "models/horse.3ds is not there; scripts/setup fetches it";
-    expect_rest("horse_small_distance.json", "da42aa1fdf3570bb");
+    expect_rest("horse_distance.json", "da42aa1fdf3570bb");
 }
 
 TEST_F(SimulateCommand, ReportsTheLoadOnEachColliderUnderTheNewtonSolver) {
@@ -274,6 +278,42 @@ TEST_F(SimulateCommand, SavesTheSurfaceOfASoftBodyAlone) {
     EXPECT_EQ(content("run/cloth.pc2").size(), 32 + 11 * (64 - 8) * 12u);
     expect_success(
         {"render", "moment", "run", "--samples", "1", "--width", "60", "--height", "40", "-o", "p.png"});
+}
+
+TEST_F(SimulateCommand, ReportsTheStrainOfAMaterialThatHasNoSticks) {
+    // A block that stands on its lower side: of its height it loses about a half of density * g * height / E.
+    write("scene.json", R"({"model": {"box": {}}, "frame_limit": 90, "bodies": [{"young_modulus": 5000,
+        "mesh": {"box": {"size": [0.2, 0.2, 0.2]}}, "element": 0.1, "position": [0, 0, 0.61],
+        "pins": {"from": [-1, -1, -0.11], "to": [1, 1, -0.09]}}]})");
+    const nlohmann::json report = simulate("scene.json");
+    EXPECT_EQ(report.at("sticks"), 0);
+    EXPECT_GT(report.at("strain").at("mean"), 0.1);
+    EXPECT_LT(report.at("strain").at("largest"), 0.6);
+    EXPECT_GT(report.at("strain").at("edges").at("mean"), 0.05);
+    EXPECT_GE(report.at("strain").at("edges").at("largest"),
+              report.at("strain").at("edges").at("percentile_99"));
+}
+
+TEST_F(SimulateCommand, TakesAboutAsManyParticlesAsItIsToldAndHoldsThoseNearestToTheScenes) {
+    write("scene.json", R"({"model": {"box": {}}, "frame_limit": 9, "cloth": {"particles": [61, 31],
+        "size": [2, 1], "position": [0, 0, 2], "pins": [[0, 0], [1, 0], [60, 30]]}})");
+    EXPECT_EQ(simulate("scene.json").at("particles"), 61 * 31);
+    EXPECT_EQ(simulate("scene.json", {"--particles", "200", "--obj"}).at("particles"), 20 * 10);
+    // Two corners stay where they began, at opposite ends; none of the others does.
+    const auto places_in = [&](const std::string& frame) {
+        std::vector<std::array<double, 3>> places;
+        std::istringstream lines(content("run/frames/cloth_" + frame + ".obj"));
+        for (std::string line; std::getline(lines, line);)
+            if (std::array<double, 3> p{};
+                std::sscanf(line.c_str(), "v %lf %lf %lf", &p[0], &p[1], &p[2]) == 3)
+                places.push_back(p);
+        return places;
+    };
+    const auto first = places_in("000000"), last = places_in("000009");
+    ASSERT_EQ(last.size(), 200u);
+    for (std::size_t i = 0; i < last.size(); ++i) EXPECT_EQ(first[i] == last[i], i == 0 || i == 199) << i;
+    write("bag.json", R"({"model": {"box": {}}, "cloth": {"mesh": {"sphere": {}}, "position": [0, 0, 2]}})");
+    expect_failure(2, "--particles", {"simulate", "bag.json", "-o", "run", "--particles", "100"});
 }
 
 TEST_F(SimulateCommand, TakesABodyFromAFileOfTetrahedra) {

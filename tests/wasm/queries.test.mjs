@@ -287,7 +287,7 @@ describe('A simulation', () => {
         assert.throws(() => scene.makeSimulation(map, { bodies: [null, null] }), /more meshes of bodies than bodies/);
     });
     test('of a scene with a file needs its mesh from outside', () => {
-        const scene = echinus.parseScene(readScene('horse_small.json').replace('horse_small', 'horse'), 'horse.json');
+        const scene = echinus.parseScene(readScene('horse.json').replace('[100, 100]', '[30, 30]'), 'horse.json');
         assert.equal(scene.modelFile, 'horse.3ds');
         const map = scene.buildMap(echinus.makeSphere(0.5, 20, 10));
         assert.equal(scene.makeSimulation(map).frame, 0);

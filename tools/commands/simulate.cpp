@@ -15,11 +15,13 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <memory>
 #include <optional>
 #include <span>
 #include <string>
 #include <utility>
+#include <variant>
 #include <vector>
 
 using namespace echinus;
@@ -39,6 +41,7 @@ struct SimulateArguments {
     std::vector<fs::path> model_folders;
     std::optional<std::uint32_t> frame_limit;
     std::optional<std::uint32_t> stride;
+    std::optional<std::uint32_t> particle_count; ///< of the sheet, about
     std::optional<unsigned> thread_count; ///< in place of the scene's key, and for what is done on all cores
 
     unsigned threads_around() const { return thread_count.value_or(0); }
@@ -247,6 +250,38 @@ void choose_collision(const SimulateArguments& arguments, Scene& scene) {
         throw WrongUse("--self", "needs contact of surfaces with the model: --surfaces on");
 }
 
+/// A sheet of about so many particles in place of the scene's, whose rows and columns keep their proportion.
+/// Those that are held are the nearest to the scene's.
+void choose_particles(std::uint32_t particle_count, Scene& scene) {
+    if (!scene.has_cloth || scene.mesh_cloth)
+        throw WrongUse("--particles",
+                       "is about a sheet, and the scene has none: another cloth has its mesh's particles");
+    constexpr double kLeast = 2, kMost = 4096; // as in scenes
+    ClothOptions& sheet = scene.cloth;
+    const ClothOptions before = sheet;
+    const double factor = std::sqrt(particle_count / (double{1} * sheet.column_count * sheet.row_count));
+    const auto scaled = [&](std::uint32_t count) {
+        return static_cast<std::uint32_t>(std::clamp(std::round(factor * count), kLeast, kMost));
+    };
+    sheet.column_count = scaled(sheet.column_count);
+    sheet.row_count = scaled(sheet.row_count);
+    const auto renumber = [&](std::vector<std::uint32_t>& particles) {
+        for (std::uint32_t& particle : particles) {
+            const auto nearest = [](std::uint32_t place, std::uint32_t from, std::uint32_t to) {
+                return static_cast<std::uint32_t>(std::round(double{1} * place * (to - 1) / (from - 1)));
+            };
+            particle = nearest(particle / before.column_count, before.row_count, sheet.row_count) *
+                           sheet.column_count +
+                       nearest(particle % before.column_count, before.column_count, sheet.column_count);
+        }
+        std::sort(particles.begin(), particles.end());
+        particles.erase(std::unique(particles.begin(), particles.end()), particles.end());
+    };
+    renumber(sheet.pins);
+    for (SceneAttachment& attachment : scene.cloth_attachments)
+        renumber(std::get<std::vector<std::uint32_t>>(attachment.vertices));
+}
+
 std::vector<ColliderResult> results_of(const LoadedColliders& colliders, Course& course) {
     std::vector<ColliderResult> results;
     for (std::size_t c = 0; c < colliders.maps.size(); ++c)
@@ -293,6 +328,7 @@ void simulate(const SimulateArguments& arguments) {
     if (arguments.frame_limit) scene.frame_limit = *arguments.frame_limit;
     scene.simulation.thread_count = arguments.thread_count.value_or(scene.simulation.thread_count);
     choose_collision(arguments, scene);
+    if (arguments.particle_count) choose_particles(*arguments.particle_count, scene);
     require_playable_colliders(arguments, scene);
     // A page takes its frames from all, and so its last is the end; a folder's last must be one that is
     // saved.
@@ -377,6 +413,11 @@ void add_options(Command command, SimulateArguments& arguments) {
         .add("--every", &arguments.stride,
              "Save every so many frames; without it all in a folder, and 60 per second in a page")
         .range(1, 1'000'000)
+        .type_name("COUNT");
+    command
+        .add("--particles", &arguments.particle_count,
+             "About so many particles of the sheet in place of the scene's, in as many rows for each column")
+        .range(4, 4096 * 4096)
         .type_name("COUNT");
     command
         .add("--from-state", &arguments.from_state,

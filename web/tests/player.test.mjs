@@ -25,7 +25,7 @@ let browser, torus, horse;
 before(async () => {
     if (skip) return;
     torus = record('recorded_torus', inProject('scenes/torus_small.json'));
-    if (existsSync(inProject('models/horse.3ds'))) horse = record('recorded_horse', inProject('scenes/horse_small.json'));
+    if (existsSync(inProject('models/horse.3ds'))) horse = record('recorded_horse', inProject('scenes/horse.json'), '--particles', '900');
     browser = await startBrowser();
 });
 after(() => browser?.stop());

@@ -26,7 +26,8 @@ struct RestingCloth {
 };
 
 RestingCloth drape(const Setting& setting) {
-    Scene scene = read_scene(setting.scenes / (setting.is_short ? "horse_small.json" : "horse.json"));
+    Scene scene = read_scene(setting.scenes / "horse.json");
+    if (setting.is_short) scene.cloth.column_count = scene.cloth.row_count = 30;
     scene.simulation.surface_collision = scene.simulation.self_collision = false;
     scene.simulation.solver = SolverKind::Jakobsen;
     scene.simulation.time_step = 1.0 / 240;
