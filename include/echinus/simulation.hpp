@@ -10,6 +10,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <span>
@@ -53,6 +54,17 @@ struct CollisionFilter {
     std::uint32_t collider = 0; ///< index in the simulation's colliders
 };
 
+/// Particles that are held, led along a path, and let go.
+struct Handle {
+    std::vector<std::uint32_t> particles; ///< that are not pinned, each in one handle at most
+    /// Its path: where it is at which time after the simulation began, as pose_at() has it. Particles move
+    /// rigidly with it from where they begin, which is where they are at 0 s. No keys: it stands still.
+    std::vector<PoseKey> keys{};
+    /// It lets go in the first frame that begins then or later, seconds, and what it held goes on with its
+    /// velocity. Infinite: never.
+    double release_time = std::numeric_limits<double>::infinity();
+};
+
 /// Particles and what holds them together, all in world units and axes.
 struct Deformable {
     std::vector<Vec3f> positions; ///< [particle_count]
@@ -75,6 +87,7 @@ struct Deformable {
     /// writes here. Newton's cloth has its strain and its angles from it; sticks have their lengths
     /// themselves.
     std::vector<Vec3f> rest_positions{};
+    std::vector<Handle> handles{}; ///< Newton
 
     std::size_t particle_count() const { return positions.size(); }
 };
@@ -292,6 +305,18 @@ struct Residual {
     double root_mean_square = 0, largest = 0; ///< 0 without such sticks
 };
 
+/// A cut, as in a film: things are elsewhere from one frame to the next, and nothing moves on the way.
+struct Teleport {
+    RigidTransform motion; ///< a point p goes to motion.to_world(p); velocities turn along
+    /// Indices of the colliders that go along, with their keyframes.
+    std::vector<std::uint32_t> colliders{};
+    /// Whether the deformable goes along, with pinned particles and the paths of handles. Colliders to which
+    /// any of it is attached have to do as it does.
+    bool deformable = true;
+    /// Seconds after the simulation began: in the first frame that begins then or later.
+    double time = 0;
+};
+
 class [[gnu::visibility("hidden")]] Solver; // src/simulation/solver.hpp
 
 /// A deformable among colliders. The same input gives the same positions bit for bit, on every run and with
@@ -343,9 +368,9 @@ class Simulation {
     ///   of the first of them, or else of the next, and counts as lost to the others.
     /// - Far from the origin, floats may be too coarse for the room around the last free place. A particle
     ///   that cannot be placed there counts as lost.
-    /// @throws Error Diverged, naming the frame, and so does each further step; as ExactMap::build() where a
-    /// vertex cache leads a collider to a surface of which no map can be built: then nothing has changed, and
-    /// the simulation can go on after set_collider_cache() with another cache
+    /// @throws Error Diverged, naming the frame, and so does each further step; as teleport(); as
+    /// ExactMap::build() where a vertex cache leads a collider to a surface of which no map can be built:
+    /// then nothing has changed, and the simulation can go on after set_collider_cache() with another cache
     void step();
 
     const Deformable& deformable() const;
@@ -386,6 +411,16 @@ class Simulation {
     /// @throws Error InvalidOptions, naming the key, when a time or a pose is not finite, a rotation not of
     /// unit length to 1e-4, or a time not later than the one before it
     void set_collider_keyframes(std::size_t collider_index, std::vector<PoseKey> keys);
+
+    /// Newton: sets colliders, the deformable or both elsewhere, at once where its time has come, else in the
+    /// frame of its time. Velocities stay as they are, but for their directions; a collider that goes without
+    /// the deformable takes nothing along, pushes nothing on the way, and stands where it is then. What goes
+    /// together stays to each other as it was, to rounding of positions.
+    /// @throws Error InvalidOptions when the motion is not finite or its rotation off the unit length by more
+    /// than 1e-4, a collider does not exist, the solver is Jakobsen, only one of a collider and what is
+    /// attached to it goes, or, with options().surface_collision, the deformable would meet a collider there;
+    /// the last from step() where its time comes later. Then nothing has changed, and it is forgotten
+    void teleport(const Teleport& teleport);
 
     // Colliders that deform: their vertices move, and their faces stay the same. Each needs collider_index <
     // colliders().size(), an exact map and options().surface_collision. Surfaces are kept off the moving

@@ -2,10 +2,7 @@
 
 #include "simulation/validation.hpp"
 
-#include <echinus/error.hpp>
-
 #include <algorithm>
-#include <cmath>
 #include <string>
 #include <utility>
 
@@ -18,21 +15,11 @@ bool same(const RigidTransform& a, const RigidTransform& b) {
     return a.translation == b.translation && p.w == q.w && p.x == q.x && p.y == q.y && p.z == q.z;
 }
 
-void require_valid(const std::vector<PoseKey>& keys, const std::string& owner) {
-    for (std::size_t i = 0; i < keys.size(); ++i) {
-        const std::string name = owner + ": keyframe " + std::to_string(i);
-        require_valid(keys[i].pose, name);
-        if (!std::isfinite(keys[i].time))
-            throw Error(ErrorCode::InvalidOptions, name + " has a time that is not finite");
-        if (i > 0 && !(keys[i].time > keys[i - 1].time))
-            throw Error(ErrorCode::InvalidOptions, name + " is at " + std::to_string(keys[i].time) +
-                                                       " s, not later than the one before it, at " +
-                                                       std::to_string(keys[i - 1].time) +
-                                                       " s; times must ascend");
-    }
-}
-
 } // namespace
+
+RigidTransform after(const RigidTransform& motion, const RigidTransform& pose) {
+    return {(motion.rotation * pose.rotation).normalised(), motion.to_world(pose.translation)};
+}
 
 void ColliderMotions::lead_to(std::size_t collider, const std::string& name, const RigidTransform& pose) {
     require_valid(pose, name);
@@ -61,6 +48,13 @@ void ColliderMotions::begin_frame(std::vector<Collider>& colliders, double end_t
             colliders[c].linear_velocity = colliders[c].angular_velocity = {};
         if (motion.next) motion.last = std::exchange(motion.next, std::nullopt);
     }
+}
+
+void ColliderMotions::move(std::size_t collider, const RigidTransform& motion) {
+    Motion& led = motions_[collider];
+    for (PoseKey& key : led.keys) key.pose = after(motion, key.pose);
+    if (led.next) led.next = after(motion, *led.next);
+    if (led.last) led.last = after(motion, *led.last);
 }
 
 bool ColliderMotions::all_arrived(double time) const {

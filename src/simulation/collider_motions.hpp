@@ -11,6 +11,9 @@
 
 namespace echinus {
 
+/// First the pose, then the motion.
+RigidTransform after(const RigidTransform& motion, const RigidTransform& pose);
+
 /// What leads the colliders of a simulation: constant velocities, a pose for the next frame, or keys. All
 /// become velocities for a frame.
 class ColliderMotions {
@@ -23,6 +26,9 @@ class ColliderMotions {
     void lead_to(std::size_t collider, const std::string& name, const RigidTransform& pose);
     /// The same.
     void follow(std::size_t collider, const std::string& name, std::vector<PoseKey> keys);
+
+    /// All that leads a collider is elsewhere.
+    void move(std::size_t collider, const RigidTransform& motion);
 
     /// Gives the colliders that are led the velocities of the frame that begins.
     /// @param end_time  when the frame ends, seconds since the simulation began

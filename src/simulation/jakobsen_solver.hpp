@@ -24,6 +24,11 @@ class JakobsenSolver : public Solver {
     Load load_on(std::size_t) const override { return {}; }
     void archive(StateArchive& state) override;
 
+  protected:
+    // Handles and teleports need the other solver.
+    void set_held(std::uint32_t, bool) override {}
+    void move_particles(const RigidTransform&) override {}
+
   private:
     void begin_frame();
     void integrate();

@@ -50,8 +50,11 @@ NewtonSolver::NewtonSolver(Deformable deformable_in, std::vector<Collider> colli
         motion_.velocities[i] =
             (motion_.places[i] - Vec3d(deformable.previous_positions[i])) * (1 / options.time_step);
         is_held_[i] = deformable.inverse_masses[i] == 0 ? 1 : 0;
-        if (is_held_[i] != 0) motion_.velocities[i] = {};
     }
+    for (const Handle& handle : deformable.handles)
+        for (const std::uint32_t particle : handle.particles) is_held_[particle] = 1;
+    for (std::size_t i = 0; i < is_held_.size(); ++i)
+        if (is_held_[i] != 0) motion_.velocities[i] = {};
     for (const Attachment& attachment : deformable.attachments)
         held_by_[attachment.particle] = attachment.collider;
     for (std::size_t c = 0; c < colliders.size(); ++c) {
@@ -126,7 +129,7 @@ std::uint32_t NewtonSolver::part_count() {
     if (!options.surface_collision) return 1;
     const PointArrays now = places_now();
     const double room = threshold::kDecidingRoom * fastest() * options.time_step;
-    double longest = 0;
+    double longest = handles_.longest_displacement(time_of(0), time_of(1));
     for (std::size_t c = 0; c < colliders.size(); ++c) {
         Collider after = colliders[c];
         after.pose = pose_after(colliders[c], options.time_step);
@@ -212,10 +215,12 @@ std::optional<PointArrays> NewtonSolver::carried_start(const std::vector<Collide
     const PointArrays from = places_now();
     PointArrays start = from;
     attachments_.follow(colliders, deforming_, part.end, start);
+    handles_.follow(time_of(part.begin), time_of(part.end), start);
     if (!contacts_ || !options.surface_collision) return start;
     const Stopwatch stopwatch(profile.collision_seconds);
     const CarryField field(before, colliders, is_near_, deformations_, part, threshold::kTouch * thickness_);
-    if (field.is_zero()) return start;
+    if (field.is_zero() && !(handles_.longest_displacement(time_of(part.begin), time_of(part.end)) > 0))
+        return start;
     field.carry(start, is_held_, workers_);
     const bool is_carried =
         contacts_->carry(before, colliders, deformations_, part, from, start, is_held_, is_least, workers_);
@@ -293,15 +298,19 @@ double NewtonSolver::fastest() const {
 }
 
 void NewtonSolver::publish() {
+    publish_places();
+    largest_speed = fastest();
+    PointArrays ends;
+    ends.load(deformable.positions);
+    bounds_.require_ends(ends, deformable.particle_count(), frame);
+}
+
+void NewtonSolver::publish_places() {
     for (std::size_t i = 0; i < motion_.particle_count(); ++i) {
         const Vec3d place = motion_.places[i], velocity = motion_.velocities[i];
         deformable.positions[i] = Vec3f(place);
         deformable.previous_positions[i] = Vec3f(place - velocity * options.time_step);
     }
-    largest_speed = fastest();
-    PointArrays ends;
-    ends.load(deformable.positions);
-    bounds_.require_ends(ends, deformable.particle_count(), frame);
 }
 
 void NewtonSolver::set_particle_velocity(std::size_t particle, const Vec3d& velocity) {
@@ -309,6 +318,16 @@ void NewtonSolver::set_particle_velocity(std::size_t particle, const Vec3d& velo
     motion_.velocities[particle] = velocity;
     motion_.is_smooth[particle] = 0;
     deformable.previous_positions[particle] = Vec3f(motion_.places[particle] - velocity * options.time_step);
+}
+
+void NewtonSolver::move_particles(const RigidTransform& motion) {
+    const Rotation& turn = motion.rotation;
+    for (std::vector<Vec3d>* places : {&motion_.places, &motion_.places_before})
+        for (Vec3d& place : *places) place = motion.to_world(place);
+    for (std::vector<Vec3d>* vectors : {&motion_.velocities, &motion_.velocities_before, &gained_})
+        for (Vec3d& vector : *vectors) vector = turn.apply(vector);
+    if (contacts_) contacts_->turn_own(turn);
+    publish_places();
 }
 
 /// As an acceleration in the next frame: of the velocity of the air across a face, relative to it, the rate a

@@ -22,7 +22,12 @@ class NewtonSolver : public Solver {
     Load load_on(std::size_t collider) const override;
     void archive(StateArchive& state) override;
 
+  protected:
+    void set_held(std::uint32_t particle, bool is_held) override { is_held_[particle] = is_held ? 1 : 0; }
+    void move_particles(const RigidTransform& motion) override;
+
   private:
+    double time_of(float share) const { return (frame + double{share}) * options.time_step; }
     void require_ways();
     void deform();
     std::uint32_t part_count();
@@ -37,6 +42,7 @@ class NewtonSolver : public Solver {
     void minimise(std::vector<Vec3d>& places, const PointArrays& start, double seconds,
                   std::uint32_t newton_steps);
     void publish();
+    void publish_places();
 
     ImplicitStep step_;
     Motion motion_;

@@ -24,6 +24,7 @@ Simulation& Simulation::operator=(Simulation&& other) noexcept = default;
 
 void Simulation::step() {
     const SimulationOptions& options = solver_->options;
+    solver_->carry_out_teleports();
     if (options.wind_rate > 0 && !solver_->has_blown) blow(options.wind, options.wind_rate);
     solver_->step();
     solver_->has_blown = false;
@@ -67,6 +68,10 @@ void Simulation::set_collider_pose(std::size_t collider_index, const RigidTransf
 
 void Simulation::set_collider_keyframes(std::size_t collider_index, std::vector<PoseKey> keys) {
     solver_->motions.follow(collider_index, solver_->name_of_collider(collider_index), std::move(keys));
+}
+
+void Simulation::teleport(const Teleport& teleport) {
+    solver_->teleport(teleport);
 }
 
 void Simulation::set_collider_vertices(std::size_t collider_index, std::span<const Vec3f> vertices_local) {

@@ -126,6 +126,11 @@ void require_part(const Deformable& part, std::size_t number, std::size_t partic
         require_option(attachment.particle < part.particle_count(),
                        name + "an attachment names particle " + std::to_string(attachment.particle) +
                            "; the last one is " + std::to_string(part.particle_count() - 1));
+    for (const Handle& handle : part.handles)
+        for (const std::uint32_t particle : handle.particles)
+            require_option(particle < part.particle_count(),
+                           name + "a handle names particle " + std::to_string(particle) +
+                               "; the last one is " + std::to_string(part.particle_count() - 1));
     for (const CollisionFilter& filter : part.filters)
         require_option(filter.particle < part.particle_count(),
                        name + "a filter names particle " + std::to_string(filter.particle) +
@@ -155,6 +160,10 @@ void append(Deformable& to, const Deformable& part) {
     for (Attachment attachment : part.attachments) {
         attachment.particle += first;
         to.attachments.push_back(attachment);
+    }
+    for (Handle handle : part.handles) {
+        for (std::uint32_t& particle : handle.particles) particle += first;
+        to.handles.push_back(std::move(handle));
     }
     for (CollisionFilter filter : part.filters) {
         filter.particle += first;

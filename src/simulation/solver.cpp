@@ -61,6 +61,7 @@ Deformable valid_start(Deformable deformable, const std::vector<Collider>& colli
     require_valid(colliders, options);
     require_valid_attachments(deformable, colliders.size());
     require_valid_filters(deformable, colliders.size());
+    require_valid_handles(deformable);
     // So that what is read of it later is whole, and that nothing that is parted stays stretched.
     if (deformable.rest_positions.empty()) deformable.rest_positions = deformable.positions;
     if (options.untangle)
@@ -75,8 +76,8 @@ Solver::Solver(Deformable deformable_in, std::vector<Collider> colliders_in,
     : deformable(valid_start(std::move(deformable_in), colliders_in, options_in)),
       colliders(with_unit_rotations(std::move(colliders_in))), motions(colliders.size()),
       options(with_thickness(options_in, deformable)), largest_speed(std::numeric_limits<double>::infinity()),
-      workers_(options.thread_count), attachments_(deformable, colliders), deforming_(colliders.size()),
-      rest_(options.rest, deformable.positions), bounds_(options, deformable),
+      workers_(options.thread_count), attachments_(deformable, colliders), handles_(deformable),
+      deforming_(colliders.size()), rest_(options.rest, deformable.positions), bounds_(options, deformable),
       start_hash_(hash_of(deformable.positions)) {
     for (const Collider& collider : colliders) start_poses_.push_back(collider.pose);
     if (options.surface_collision) require_apart(deformable, colliders, options);
@@ -115,6 +116,8 @@ void Solver::prepare_next_frame() {
 }
 
 void Solver::move_colliders_on() {
+    handles_.begin_frame(frame * options.time_step,
+                         [&](std::uint32_t particle) { set_held(particle, false); });
     motions.begin_frame(colliders, (frame + 1.0) * options.time_step, options.time_step);
     for (std::size_t i = 0; i < colliders.size(); ++i)
         if (!Bounds::contain_way(colliders[i], options.time_step))
@@ -157,7 +160,7 @@ void Solver::follow_cache(std::size_t collider, VertexCache cache) {
 
 bool Solver::all_arrived() const {
     const double time = frame * options.time_step;
-    return motions.all_arrived(time) &&
+    return motions.all_arrived(time) && handles_.all_done(time) && teleports_.empty() &&
            std::all_of(deforming_.begin(), deforming_.end(),
                        [&](const auto& collider) { return !collider || collider->has_arrived(time); });
 }

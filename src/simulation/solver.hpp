@@ -5,6 +5,7 @@
 #include "simulation/bounds.hpp"
 #include "simulation/collider_motions.hpp"
 #include "simulation/deforming_collider.hpp"
+#include "simulation/handles.hpp"
 #include "simulation/particles.hpp"
 #include "simulation/rest.hpp"
 #include "simulation/state/fingerprint.hpp"
@@ -38,6 +39,10 @@ class Solver {
     /// Of all that decides how the simulation goes on. Reading may leave a part of it when it throws.
     virtual void archive(StateArchive& state) = 0;
 
+    /// At once, or in the frame of its time. @throws Error InvalidOptions; then it is forgotten
+    void teleport(const Teleport& teleport);
+    /// Those of the frame that comes. The same.
+    void carry_out_teleports();
     Residual residual() const;
     /// @throws Error InvalidOptions, as DeformingCollider's
     void lead_vertices(std::size_t collider, std::span<const Vec3f> vertices_local);
@@ -59,6 +64,11 @@ class Solver {
   protected:
     Solver(const Solver&) = default;
 
+    /// A handle holds a particle from now on, or lets it go.
+    virtual void set_held(std::uint32_t particle, bool is_held) = 0;
+    /// All particles are elsewhere from now on, which the next frame takes as standing.
+    virtual void move_particles(const RigidTransform& motion) = 0;
+
     /// Builds all maps of the frame's end before anything moves: where a map cannot be built, nothing has
     /// changed.
     void build_maps();
@@ -71,6 +81,7 @@ class Solver {
 
     Workers workers_;
     Attachments attachments_;
+    Handles handles_;
     std::vector<std::optional<DeformingCollider>> deforming_; ///< by collider; none where it never deformed
     RestWatch rest_;
     Bounds bounds_;
@@ -79,7 +90,9 @@ class Solver {
     template <typename Lead>
     void lead_surface(std::size_t collider, const Lead& lead);
     bool all_arrived() const;
+    void carry_out(const Teleport& teleport);
 
+    std::vector<Teleport> teleports_;         ///< to come
     std::uint64_t start_hash_;                ///< of where particles began
     std::vector<RigidTransform> start_poses_; ///< of the colliders
 };

@@ -116,4 +116,29 @@ void require_apart(const Deformable& deformable, const std::vector<Collider>& co
         });
 }
 
+void require_no_meeting(const Deformable& deformable, std::span<const Vec3f> places,
+                        std::span<const std::uint8_t> passes, const Collider& collider,
+                        const std::string& name) {
+    const ExactMap* const map = map_of_surface(collider);
+    if (map == nullptr) return;
+    TriangleMesh surface = surface_of(deformable, elements_of(deformable));
+    surface.vertices.assign(places.begin(), places.end());
+    const ModelPairs pairs(collider, {passes.begin(), passes.end()});
+    const auto [intersecting, touching] = pairs.with(surface);
+    std::size_t inside_count = 0;
+    if (pairs.has_inside()) {
+        std::vector<std::uint8_t> inside(places.size());
+        contains_batch(with_map(collider, *map), places, inside);
+        for (std::size_t v = 0; v < inside.size(); ++v)
+            if (inside[v] != 0 && (passes.empty() || passes[v] == 0)) ++inside_count;
+    }
+    const std::size_t face_count = intersecting.size() + touching.size();
+    if (face_count == 0 && inside_count == 0) return;
+    throw Error(ErrorCode::InvalidOptions,
+                "a teleport sets the deformable and " + name + " where " +
+                    (face_count > 0 ? std::to_string(face_count) + " pairs of their faces meet"
+                                    : std::to_string(inside_count) + " particles are inside") +
+                    "; set them elsewhere, or both elsewhere together");
+}
+
 } // namespace echinus

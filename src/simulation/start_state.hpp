@@ -3,6 +3,9 @@
 #include <echinus/collider.hpp>
 #include <echinus/simulation.hpp>
 
+#include <cstdint>
+#include <span>
+#include <string>
 #include <vector>
 
 namespace echinus {
@@ -14,5 +17,14 @@ namespace echinus {
 /// @throws Error InvalidOptions, naming the first pairs, or the first particle inside
 void require_apart(const Deformable& deformable, const std::vector<Collider>& colliders,
                    const SimulationOptions& options);
+
+/// The same of one model where a deformable is set elsewhere.
+/// @param places  [particle_count] where it is to be
+/// @param passes  as let_through() has it
+/// @param name    of the model
+/// @throws Error InvalidOptions
+void require_no_meeting(const Deformable& deformable, std::span<const Vec3f> places,
+                        std::span<const std::uint8_t> passes, const Collider& collider,
+                        const std::string& name);
 
 } // namespace echinus

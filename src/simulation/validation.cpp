@@ -173,6 +173,8 @@ void require_jakobsen(const Deformable& deformable, const SimulationOptions& opt
     };
     refuse(!deformable.tetrahedra.empty(),
            "the deformable has tetrahedra, and the jakobsen solver has sticks only; leave them out");
+    refuse(!deformable.handles.empty(), "the deformable has handles, and the jakobsen solver holds what is "
+                                        "pinned or attached; leave them out");
     refuse(options.surface_collision, "simulation option surface_collision is true, and under the jakobsen "
                                       "solver only particles collide; leave it out");
     refuse(rounding_decides(deformable, options),
@@ -219,6 +221,37 @@ void require_valid_filters(const Deformable& deformable, std::size_t collider_co
         const auto& [particle, collider] = deformable.filters[i];
         const std::string name = "filter " + std::to_string(i) + " of particle " + std::to_string(particle);
         require_there(name, particle, collider, deformable.particle_count(), collider_count);
+    }
+}
+
+void require_valid(const std::vector<PoseKey>& keys, const std::string& owner) {
+    for (std::size_t i = 0; i < keys.size(); ++i) {
+        const std::string name = owner + ": keyframe " + std::to_string(i);
+        require_valid(keys[i].pose, name);
+        if (!std::isfinite(keys[i].time)) fail(name + " has a time that is not finite");
+        if (i > 0 && !(keys[i].time > keys[i - 1].time))
+            fail(name + " is at " + std::to_string(keys[i].time) +
+                 " s, not later than the one before it, at " + std::to_string(keys[i - 1].time) +
+                 " s; times must ascend");
+    }
+}
+
+void require_valid_handles(const Deformable& deformable) {
+    std::vector<bool> is_held(deformable.particle_count());
+    for (std::size_t h = 0; h < deformable.handles.size(); ++h) {
+        const Handle& handle = deformable.handles[h];
+        const std::string name = "handle " + std::to_string(h);
+        require_valid(handle.keys, name);
+        if (std::isnan(handle.release_time)) fail(name + " has a release time that is not a number");
+        for (const std::uint32_t particle : handle.particles) {
+            const std::string of_particle = name + " of particle " + std::to_string(particle);
+            if (particle >= deformable.particle_count())
+                fail(of_particle + ": the last one is " + std::to_string(deformable.particle_count() - 1));
+            if (deformable.inverse_masses[particle] == 0)
+                fail(of_particle + ": it is pinned or attached already");
+            if (is_held[particle]) fail(of_particle + " is not its first; a particle has at most one");
+            is_held[particle] = true;
+        }
     }
 }
 

@@ -38,6 +38,11 @@ void require_valid_filters(const Deformable& deformable, std::size_t collider_co
 /// @param owner  of the pose, as the sentence begins: "collider 0"
 void require_valid(const RigidTransform& pose, const std::string& owner);
 
+/// @param owner  of the keys: "collider 0"
+void require_valid(const std::vector<PoseKey>& keys, const std::string& owner);
+/// @pre the deformable is valid but for its handles
+void require_valid_handles(const Deformable& deformable);
+
 /// How errors call the cache of a collider.
 std::string name_of(const VertexCache& cache);
 /// @param vertex_count  of the collider's mesh

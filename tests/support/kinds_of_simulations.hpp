@@ -182,10 +182,30 @@ inline KindOfSimulation sheet_on_a_turning_box() {
     return kind;
 }
 
+/// A sheet whose corners are led and let go, and which is set elsewhere with its ball meanwhile.
+inline KindOfSimulation sheet_that_is_led_and_set_elsewhere() {
+    KindOfSimulation kind{.name = "a sheet that is led, let go and set elsewhere",
+                          .deformable = sheet_at(0.25, 0.6, 13),
+                          .colliders =
+                              colliders_of({make_sphere(0.15, 20, 10), make_box({0.2, 0.2, 0.2}, 2)}),
+                          .options = surfaces_for_kinds(true),
+                          .begin = [](Simulation& s) {
+                              for (const double time : {0.1, 0.4})
+                                  s.teleport({.motion = {Rotation::about({0, 0, 1}, 0.4), {0.1, 0, 0}},
+                                              .colliders = {0},
+                                              .time = time});
+                          }};
+    kind.colliders[1].pose.translation = {0, 0, -1};
+    kind.deformable.handles = {{{0, 1, 13}, {{0, {}}, {1, {{}, {0.3, 0, 0}}}}, 0.3},
+                               {{12}, {{0, {}}, {1, {{}, {0, 0, 0.3}}}}}};
+    return kind;
+}
+
 inline std::vector<KindOfSimulation> kinds_of_simulations() {
-    return {jakobsens_particles(),   continuous_materials_particles(), sheet_among_moving_colliders(),
-            soft_bodies(),           sheet_on_deforming_balls(),       sheet_that_passes_through(),
-            sheet_on_a_turning_box()};
+    return {jakobsens_particles(),          continuous_materials_particles(),
+            sheet_among_moving_colliders(), soft_bodies(),
+            sheet_on_deforming_balls(),     sheet_that_passes_through(),
+            sheet_on_a_turning_box(),       sheet_that_is_led_and_set_elsewhere()};
 }
 
 } // namespace echinus::test

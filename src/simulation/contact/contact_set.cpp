@@ -274,6 +274,14 @@ void ContactSet::add_load(std::uint32_t collider, const Vec3d& place, const Vec3
     impulses_[collider].angular -= cross(place - pivot, force) * step_;
 }
 
+void ContactSet::turn(std::uint32_t obstacle, const Rotation& turn) {
+    for (Bristle& bristle : bristles_)
+        if (bristle.key.obstacle == obstacle) {
+            bristle.normal = turn.apply(bristle.normal);
+            bristle.slip = turn.apply(bristle.slip);
+        }
+}
+
 void ContactSet::archive(StateArchive& state) {
     state.items(bristles_, [&](Bristle& bristle) {
         state.index(bristle.key.obstacle, obstacle_count_);

@@ -77,6 +77,8 @@ class ContactSet : public ContactEnergy {
     /// The load of the deformable on a collider in this frame, as its mean over so many seconds.
     Load load_on(std::size_t collider, double seconds) const;
 
+    /// Between steps: turns the bristles of what stands in the world.
+    void turn(std::uint32_t obstacle, const Rotation& turn);
     void archive(StateArchive& state);
 
   private:

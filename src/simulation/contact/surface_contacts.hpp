@@ -92,6 +92,9 @@ class SurfaceContacts {
     /// [particle] 1 for those that a contact pushes, or that were stopped in this step. After end_step()
     std::span<const std::uint8_t> touching() const { return is_touching_; }
 
+    /// The deformable is elsewhere, turned.
+    void turn_own(const Rotation& turn) { contacts_.turn(static_cast<std::uint32_t>(collider_count_), turn); }
+
     void archive(StateArchive& state);
 
   private:

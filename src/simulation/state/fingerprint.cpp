@@ -76,6 +76,14 @@ std::uint64_t hash_of(const Deformable& deformable, std::uint64_t start_hash) {
     for (const auto& [collider, particle] : filters) hasher.add(collider, particle);
     for (const ElasticTetrahedron& t : deformable.tetrahedra)
         hasher.add(t.particles, t.gradients, t.volume, t.mu, t.lambda, t.damping);
+    for (const Handle& handle : deformable.handles) {
+        hasher.add_all(handle.particles);
+        hasher.add(handle.release_time, std::uint64_t{handle.keys.size()});
+        for (const auto& [time, pose] : handle.keys) {
+            const auto& [w, x, y, z] = pose.rotation;
+            hasher.add(time, w, x, y, z, pose.translation);
+        }
+    }
     if (!deformable.rest_positions.empty()) hasher.add_all(deformable.rest_positions);
     return hasher.hash();
 }

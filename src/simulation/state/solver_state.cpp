@@ -28,6 +28,13 @@ void Solver::archive_counts(StateArchive& state) {
 /// Their maps before all else that asks them.
 void Solver::archive_colliders(StateArchive& state) {
     motions.archive(state);
+    handles_.archive(state, [&](std::uint32_t particle, bool is_held) { set_held(particle, is_held); });
+    state.items(teleports_, [&](Teleport& teleport) {
+        state.pose(teleport.motion);
+        state.indices(teleport.colliders, colliders.size(), colliders.size());
+        state.flag(teleport.deformable);
+        state.value(teleport.time);
+    });
     for (std::size_t c = 0; c < colliders.size(); ++c) {
         Collider& collider = colliders[c];
         state.pose(collider.pose);
