@@ -58,6 +58,13 @@ struct SceneAttachment {
     std::uint32_t collider = 0; ///< its number
 };
 
+/// Vertices, or particles of a sheet, that are led along a path and let go: a Handle of them.
+struct SceneHandle {
+    VertexChoice vertices;
+    std::vector<PoseKey> keyframes; ///< none: it stands still
+    std::optional<double> release;  ///< seconds; none: it never lets go
+};
+
 /// Of all particles at the start that are not pinned, in the world.
 struct SceneVelocity {
     Vec3d linear;  ///< units per second
@@ -81,6 +88,7 @@ struct SceneBody {
     SoftBodyOptions options; ///< without pins and attachments
     VertexChoice pins;
     std::vector<SceneAttachment> attachments;
+    std::vector<SceneHandle> handles;
     SceneVelocity velocity;
     std::vector<std::uint32_t> ignores; ///< colliders that it passes through, by their numbers
 };
@@ -121,9 +129,11 @@ struct Scene {
     ClothOptions cloth;
     std::optional<MeshCloth> mesh_cloth;            ///< in place of `cloth`
     std::vector<SceneAttachment> cloth_attachments; ///< by numbers, of a sheet: row * column_count + column
+    std::vector<SceneHandle> cloth_handles;         ///< likewise
     SceneVelocity cloth_velocity;
     std::vector<std::uint32_t> cloth_ignores; ///< colliders that it passes through, by their numbers
     std::vector<SceneBody> bodies;            ///< soft bodies, after the cloth
+    std::vector<Teleport> teleports;
     SimulationOptions simulation;
     std::uint32_t frame_limit = 3000; ///< the simulation ends here at the latest
     /// Sentences about keys of earlier versions, or of another solver, that have no effect, and about what to

@@ -72,16 +72,29 @@ std::vector<Attachment> attached(const std::vector<SceneAttachment>& attachments
     return all;
 }
 
+/// @param held  to which they belong
+void add_handles(const std::vector<SceneHandle>& handles, const std::vector<Vec3f>& vertices,
+                 const std::string& key, Deformable& held) {
+    for (std::size_t i = 0; i < handles.size(); ++i) {
+        const auto& [choice, keyframes, release] = handles[i];
+        Handle& handle = held.handles.emplace_back();
+        handle.particles = chosen(choice, vertices, key + "[" + std::to_string(i) + "]");
+        handle.keys = keyframes;
+        if (release) handle.release_time = *release;
+    }
+}
+
 /// A sheet's particles have the places of no mesh, and are named by numbers.
 Deformable make_sheet(const Scene& scene) {
     Deformable sheet = make_cloth(scene.cloth);
+    add_handles(scene.cloth_handles, {}, "cloth.handles", sheet);
     sheet.attachments = attached(scene.cloth_attachments, {}, "cloth.attachments");
     for (const Attachment& attachment : sheet.attachments) sheet.inverse_masses[attachment.particle] = 0;
     return sheet;
 }
 
-Deformable make_cloth(const MeshCloth& cloth, const std::vector<SceneAttachment>& attachments,
-                      const NamedMesh& start, const ClothMeshes& meshes) {
+Deformable make_cloth(const MeshCloth& cloth, const Scene& scene, const NamedMesh& start,
+                      const ClothMeshes& meshes) {
     require_no_origin(start.mesh.origin, "the cloth"); // before boxes choose vertices
     MeshClothOptions options{.pose = cloth.pose, .scale = cloth.scale};
     if (cloth.rest_mesh) {
@@ -91,8 +104,10 @@ Deformable make_cloth(const MeshCloth& cloth, const std::vector<SceneAttachment>
     }
     options.threads = meshes.threads;
     options.pins = chosen(cloth.pins, start.mesh.vertices, "cloth.pins");
-    options.attachments = attached(attachments, start.mesh.vertices, "cloth.attachments");
-    return make_cloth(start.mesh, options);
+    options.attachments = attached(scene.cloth_attachments, start.mesh.vertices, "cloth.attachments");
+    Deformable made = make_cloth(start.mesh, options);
+    add_handles(scene.cloth_handles, start.mesh.vertices, "cloth.handles", made);
+    return made;
 }
 
 } // namespace
@@ -101,7 +116,7 @@ Deformable make_cloth(const Scene& scene, const ClothMeshes& meshes) {
     if (!scene.mesh_cloth) return make_sheet(scene);
     const NamedMesh start(scene.mesh_cloth->mesh, meshes.mesh, "cloth.mesh");
     try {
-        return make_cloth(*scene.mesh_cloth, scene.cloth_attachments, start, meshes);
+        return make_cloth(*scene.mesh_cloth, scene, start, meshes);
     } catch (const Error& error) {
         throw Error(error.code(), start.name + ": " + error.what());
     }
@@ -171,6 +186,7 @@ Deformable make_body(const SceneBody& body, const TetrahedralMesh* read,
     options.pins = chosen(body.pins, mesh.vertices, "pins");
     options.attachments = attached(body.attachments, mesh.vertices, "attachments");
     Deformable made = make_soft_body(mesh, options);
+    add_handles(body.handles, mesh.vertices, "handles", made);
     set_velocity(body.velocity, simulation, made);
     return made;
 }

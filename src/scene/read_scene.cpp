@@ -21,6 +21,7 @@ constexpr Range kCoordinate{-1e9, 1e9};
 constexpr Range kLength{1e-9, 1e9};
 constexpr Range kSegmentCount{1, 4096};
 constexpr Range kDegrees{-1e6, 1e6};
+constexpr Range kTime{-1e9, 1e9};
 /// Of the square of a quaternion's length.
 constexpr double kUnitTolerance = 1e-4;
 /// Unless a scene says otherwise: its sticks need a smaller one than the options have.
@@ -179,20 +180,17 @@ MapOptions read_map(JsonObject map) {
     return options;
 }
 
-RigidTransform read_pose(JsonObject& object) {
-    RigidTransform pose;
-    object.read("position", pose.translation, kCoordinate);
+Rotation read_rotation(JsonObject& object) {
     if (object.is_array("rotation")) {
         std::array<double, 4> q{};
         object.read("rotation", q, {-1, 1});
         const double size_sq = q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3];
         if (std::abs(size_sq - 1) > kUnitTolerance)
             object.refuse("rotation", "a quaternion [w, x, y, z] of length 1");
-        pose.rotation = Rotation{q[0], q[1], q[2], q[3]}.normalised();
-        return pose;
+        return Rotation{q[0], q[1], q[2], q[3]}.normalised();
     }
     auto rotation = object.object("rotation");
-    if (!rotation) return pose;
+    if (!rotation) return {};
     Vec3d axis;
     double degrees = 0;
     rotation->require("axis");
@@ -201,7 +199,13 @@ RigidTransform read_pose(JsonObject& object) {
     rotation->read("degrees", degrees, kDegrees);
     if (length(axis) < 1e-9) rotation->refuse("axis", "a direction, longer than zero");
     rotation->finish();
-    pose.rotation = Rotation::about(axis, degrees * kRadiansPerDegree);
+    return Rotation::about(axis, degrees * kRadiansPerDegree);
+}
+
+RigidTransform read_pose(JsonObject& object) {
+    RigidTransform pose;
+    object.read("position", pose.translation, kCoordinate);
+    pose.rotation = read_rotation(object);
     return pose;
 }
 
@@ -226,7 +230,7 @@ std::vector<PoseKey> read_keyframes(JsonObject& collider) {
     for (JsonObject& object : collider.objects("keyframes")) {
         PoseKey& key = keys.emplace_back();
         object.require("time");
-        object.read("time", key.time, {-1e9, 1e9});
+        object.read("time", key.time, kTime);
         key.pose = read_pose(object);
         object.finish();
         if (keys.size() > 1 && !(key.time > keys[keys.size() - 2].time))
@@ -332,6 +336,25 @@ std::vector<SceneAttachment> read_attachments(JsonObject& object, const Scene& s
     return attachments;
 }
 
+/// Each with some particles, a path and a time.
+/// @param what, read_choice  as in read_attachments()
+/// @pre the solver was read
+template <typename ReadChoice>
+std::vector<SceneHandle> read_handles(JsonObject& object, const Scene& scene, const char* what,
+                                      const ReadChoice& read_choice) {
+    if (scene.simulation.solver != SolverKind::Newton) object.refuse_keys({"handles"}, "solver", "newton");
+    std::vector<SceneHandle> handles;
+    for (JsonObject& some : object.objects("handles")) {
+        SceneHandle& handle = handles.emplace_back();
+        some.require(what);
+        handle.vertices = read_choice(some, what);
+        handle.keyframes = read_keyframes(some);
+        some.read("release", handle.release, kTime);
+        some.finish();
+    }
+    return handles;
+}
+
 /// Particles of a sheet, by column and row, that are not pinned yet.
 std::vector<std::uint32_t> read_particles(JsonObject& object, const char* key, const ClothOptions& options) {
     std::vector<Counts> places;
@@ -359,6 +382,9 @@ void read_sheet(JsonObject& cloth, Scene& scene) {
         read_attachments(cloth, scene, "particles", [&](JsonObject& object, const char* key) {
             return read_particles(object, key, options);
         });
+    scene.cloth_handles = read_handles(cloth, scene, "particles", [&](JsonObject& object, const char* key) {
+        return read_particles(object, key, options);
+    });
 }
 
 /// An array of numbers, or a box.
@@ -392,6 +418,7 @@ void read_mesh_cloth(JsonObject& cloth, Scene& scene) {
     ignore(cloth, kOfTheClothBefore, scene);
     made.pins = read_vertices(cloth, "pins");
     scene.cloth_attachments = read_attachments(cloth, scene, "vertices", read_vertices);
+    scene.cloth_handles = read_handles(cloth, scene, "vertices", read_vertices);
 }
 
 /// @pre the colliders were read
@@ -426,6 +453,7 @@ SceneBody read_body(JsonObject& object, const Scene& scene) {
     body.velocity = read_velocity(object);
     body.pins = read_vertices(object, "pins");
     body.attachments = read_attachments(object, scene, "vertices", read_vertices);
+    body.handles = read_handles(object, scene, "vertices", read_vertices);
     body.ignores = read_ignores(object, scene);
     object.finish();
     return body;
@@ -514,6 +542,23 @@ void read_solver(JsonObject& root, Scene& scene) {
     if (options.wind != Vec3d{}) root.require("wind_rate");
 }
 
+/// @pre the colliders and the solver were read
+void read_teleports(JsonObject& root, Scene& scene) {
+    if (scene.simulation.solver != SolverKind::Newton) root.refuse_keys({"teleports"}, "solver", "newton");
+    for (JsonObject& object : root.objects("teleports")) {
+        Teleport& teleport = scene.teleports.emplace_back();
+        object.require("time");
+        object.read("time", teleport.time, kTime);
+        object.read("displacement", teleport.motion.translation, kCoordinate);
+        teleport.motion.rotation = read_rotation(object);
+        object.read("colliders", teleport.colliders, numbers_of_colliders(scene));
+        object.read("deformable", teleport.deformable);
+        object.finish();
+        if (!teleport.deformable && teleport.colliders.empty())
+            object.refuse("deformable", "true, or \"colliders\" must name some: nothing goes elsewhere");
+    }
+}
+
 void read_end(JsonObject& root, Scene& scene) {
     root.read("frame_limit", scene.frame_limit, {1, 1e9});
     auto rest = root.object("at_rest");
@@ -552,6 +597,7 @@ Scene parse_scene(std::string_view text, const std::string& name) {
     read_cloth(root, scene);
     read_surfaces(root, scene);
     read_material(root, scene);
+    read_teleports(root, scene);
     read_end(root, scene);
     root.finish();
     return scene;

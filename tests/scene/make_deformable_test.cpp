@@ -137,6 +137,89 @@ TEST(SceneAttachments, AreRefusedByTheirKeys) {
                  R"("size": [1, 1], "pins": [[1, 0]], "attachments": [[1, 0]])");
 }
 
+TEST(SceneHandles, LeadParticlesOfSheetsMeshesAndBodiesAndLetGo) {
+    const auto made = [](const std::string& parts) {
+        return make_deformable(parse_scene(R"({"model": {"box": {}}, )" + parts + "}", "a.json")).handles;
+    };
+    const auto of_sheet = made(R"("cloth": {"size": [1, 1], "particles": [4, 3], "handles": [
+        {"particles": [[0, 0], [3, 2]], "keyframes": [{"time": 1, "position": [1, 2, 3]}], "release": 2.5},
+        {"particles": [[1, 0]]}]})");
+    ASSERT_EQ(of_sheet.size(), 2u);
+    EXPECT_EQ(of_sheet[0].particles, (std::vector<std::uint32_t>{0, 11}));
+    ASSERT_EQ(of_sheet[0].keys.size(), 1u);
+    EXPECT_EQ(of_sheet[0].keys[0].time, 1);
+    EXPECT_EQ(of_sheet[0].keys[0].pose.translation, (Vec3d{1, 2, 3}));
+    EXPECT_EQ(of_sheet[0].release_time, 2.5);
+    EXPECT_TRUE(of_sheet[1].keys.empty());
+    EXPECT_TRUE(std::isinf(of_sheet[1].release_time));
+    const auto of_all = made(R"("cloth": {"mesh": {"box": {}}, "handles": [
+        {"vertices": {"from": [-1, -1, 0.5], "to": [1, 1, 0.5]}}]},
+        "bodies": [{"mesh": {"box": {}}, "element": 1, "handles": [{"vertices": [7], "release": 0}]}])");
+    ASSERT_EQ(of_all.size(), 2u);
+    EXPECT_EQ(of_all[0].particles.size(), 4u);
+    EXPECT_EQ(of_all[1].particles, (std::vector<std::uint32_t>{8 + 7}));
+}
+
+TEST(SceneHandles, AreRefusedByTheirKeys) {
+    const auto expect_words = [](const std::string& words, const std::string& cloth) {
+        test::expect_error(ErrorCode::InvalidScene, words, [&] { scene_with_cloth(cloth); });
+    };
+    expect_words("cloth.handles is []; it must be an array of objects, with at least one",
+                 R"("size": [1, 1], "handles": [])");
+    expect_words("the key cloth.handles[0].particles is missing",
+                 R"("size": [1, 1], "handles": [{"release": 1}])");
+    expect_words("cloth.handles[0].release is \"soon\"; it must be a number",
+                 R"("size": [1, 1], "handles": [{"particles": [[0, 0]], "release": "soon"}])");
+    expect_words("cloth.handles[0].particles is [[0,0]]; it must be particles that are not among the pins",
+                 R"("size": [1, 1], "pins": [[0, 0]], "handles": [{"particles": [[0, 0]]}])");
+    expect_words(
+        "cloth.handles[0].keyframes[1].time is 1; it must be later",
+        R"("size": [1, 1], "handles": [{"particles": [[0, 0]], "keyframes": [{"time": 1}, {"time": 1}]}])");
+    expect_words("the nearest is \"cloth.handles[0].release\"",
+                 R"("size": [1, 1], "handles": [{"particles": [[0, 0]], "releases": 1}])");
+    test::expect_error(ErrorCode::InvalidScene, "cloth.handles", [] {
+        parse_scene(R"({"model": {"box": {}}, "solver": "jakobsen",
+            "cloth": {"size": [1, 1], "handles": [{"particles": [[0, 0]]}]}})",
+                    "a.json");
+    });
+}
+
+TEST(SceneTeleports, SetClothAndModelElsewhereAtTheirTime) {
+    const Scene scene = parse_scene(R"({"model": {"box": {"size": [1, 1, 0.2]}}, "gravity": [0, 0, 0],
+        "cloth": {"size": [1, 1], "particles": [5, 5], "position": [0, 0, 0.4], "pins": [[0, 0]]},
+        "teleports": [{"time": 0.1, "displacement": [5, 0, 0], "colliders": [0],
+                       "rotation": {"axis": [0, 0, 1], "degrees": 90}},
+                      {"time": 0.2, "displacement": [0, 0, -3], "colliders": [0], "deformable": false}]})",
+                                    "a.json");
+    Simulation simulation = make_simulation(scene, ExactMap::build(make_box({1, 1, 0.2})));
+    for (int i = 0; i < 7; ++i) simulation.step();
+    EXPECT_NEAR(length(Vec3d(simulation.positions()[0]) - Vec3d{5.5, -0.5, 0.4}), 0, 1e-5);
+    EXPECT_NEAR(length(simulation.colliders()[0].pose.translation - Vec3d{5, 0, 0}), 0, 1e-12);
+    for (int i = 0; i < 7; ++i) simulation.step();
+    EXPECT_NEAR(length(Vec3d(simulation.positions()[0]) - Vec3d{5.5, -0.5, 0.4}), 0, 1e-5);
+    EXPECT_NEAR(length(simulation.colliders()[0].pose.translation - Vec3d{5, 0, -3}), 0, 1e-12);
+}
+
+TEST(SceneTeleports, AreRefusedByTheirKeys) {
+    const auto expect_words = [](const std::string& words, const std::string& teleports,
+                                 const std::string& more = "") {
+        test::expect_error(ErrorCode::InvalidScene, words, [&] {
+            parse_scene(R"({"model": {"box": {}}, "cloth": {"size": [1, 1]}, "teleports": )" + teleports +
+                            more + "}",
+                        "a.json");
+        });
+    };
+    expect_words("the key teleports[0].time is missing", "[{}]");
+    expect_words("teleports[0].colliders is [1]", R"([{"time": 1, "colliders": [1]}])");
+    expect_words("teleports[0].displacement is 3", R"([{"time": 1, "displacement": 3}])");
+    expect_words("teleports[0].rotation is [1,1,0,0]", R"([{"time": 1, "rotation": [1, 1, 0, 0]}])");
+    expect_words("teleports[0].deformable is false; it must be true",
+                 R"([{"time": 1, "deformable": false}])");
+    expect_words("the nearest is \"teleports[0].displacement\"",
+                 R"([{"time": 1, "displacment": [1, 0, 0]}])");
+    expect_words("teleports is ", R"([{"time": 1}])", R"(, "solver": "jakobsen")");
+}
+
 TEST(SceneVelocity, TurnsAllThatIsNotPinnedAboutTheirCentreOfMass) {
     const Scene scene = parse_scene(R"({"model": {"box": {}}, "solver": "newton", "time_step": 0.001,
         "cloth": {"size": [2, 1], "particles": [5, 4], "position": [3, 4, 5], "density": 1, "angular_velocity": [0, 90, 180]},
