@@ -260,6 +260,9 @@ struct SimulationOptions {
     /// no air; then the wind must be 0, too.
     Vec3d wind{};         ///< units per second
     double wind_rate = 0; ///< per second
+    /// Newton: inside the closed pieces of cloth, beyond that around them, N/m^2; constant, as that of a
+    /// pump. It pushes each face outwards. Not negative.
+    double pressure = 0;
 };
 
 /// A force and a torque that bear on a collider, in the world's axes.

@@ -3,6 +3,7 @@
 #include "mechanics/bending.hpp"
 #include "mechanics/membrane.hpp"
 #include "mechanics/neo_hookean.hpp"
+#include "mechanics/pressure.hpp"
 #include "mechanics/springs.hpp"
 
 #include <cstdint>
@@ -19,6 +20,7 @@ struct ElasticParts {
     std::vector<ElasticHinge> hinges;
     std::vector<ElasticSpring> springs;
     std::vector<ElasticTetrahedron> tetrahedra;
+    std::vector<PressedTriangle> pressed; ///< closed surfaces
 };
 
 /// The elastic energy of a deformable, and what a step dissipates in it.
@@ -44,6 +46,7 @@ class ElasticModel {
     Bending bending_;
     Springs springs_;
     NeoHookean tetrahedra_;
+    Pressure pressure_;
 };
 
 } // namespace echinus

@@ -128,10 +128,11 @@ inline void read_newton_options(JsonObject& object, SimulationOptions& o) {
     object.read("shear_stiffness", o.material.shear_stiffness, {0, 1e9});
     object.read("bending_stiffness", o.material.bending_stiffness, {0, 1e6});
     object.read("damping", o.material.damping, {0, 1e6});
+    object.read("pressure", o.pressure, {0, 1e9});
     if (o.solver != SolverKind::Newton)
         object.refuse_keys(
-            {"density", "stretch_stiffness", "shear_stiffness", "bending_stiffness", "damping"}, "solver",
-            "newton");
+            {"density", "stretch_stiffness", "shear_stiffness", "bending_stiffness", "damping", "pressure"},
+            "solver", "newton");
 }
 
 } // namespace echinus

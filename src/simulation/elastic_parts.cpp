@@ -1,5 +1,7 @@
 #include "simulation/elastic_parts.hpp"
 
+#include "simulation/closed_pieces.hpp"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -143,8 +145,12 @@ class Weigher {
 
 } // namespace
 
-ElasticParts elastic_parts(const Deformable& deformable, const ClothMaterial& material) {
-    return Weigher(deformable, material).weigh();
+ElasticParts elastic_parts(const Deformable& deformable, const SimulationOptions& options) {
+    ElasticParts parts = Weigher(deformable, options.material).weigh();
+    if (options.pressure > 0)
+        for (const Triangle& face : closed_pieces(deformable))
+            parts.pressed.push_back({face, options.pressure});
+    return parts;
 }
 
 } // namespace echinus

@@ -39,7 +39,7 @@ std::vector<Vec3f> vertices_of(const Collider& collider, const std::optional<Def
 NewtonSolver::NewtonSolver(Deformable deformable_in, std::vector<Collider> colliders_in,
                            const SimulationOptions& options_in)
     : Solver(std::move(deformable_in), std::move(colliders_in), options_in),
-      step_(elastic_parts(deformable, options.material)), motion_(deformable.particle_count()),
+      step_(elastic_parts(deformable, options)), motion_(deformable.particle_count()),
       is_held_(deformable.particle_count()), accelerations_(deformable.particle_count(), options.gravity),
       gained_(deformable.particle_count()), deformations_(colliders.size()), is_near_(colliders.size()),
       may_touch_(deformable.particle_count()), held_by_(deformable.particle_count(), kNoObstacle),

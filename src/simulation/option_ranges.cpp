@@ -39,6 +39,7 @@ void require_ranges(const SimulationOptions& o) {
     require_within("simulation option newton_tolerance", o.newton_tolerance, 0, 1);
     require_within("simulation option air_drag", o.air_drag, 0, 1e6);
     require_within("simulation option wind_rate", o.wind_rate, 0, 1e9);
+    require_within("simulation option pressure", o.pressure, 0, 1e9);
 }
 
 } // namespace echinus

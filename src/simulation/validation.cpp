@@ -3,6 +3,7 @@
 #include "collider/frame_change.hpp"
 #include "files/text.hpp"
 #include "mesh/local_frame.hpp"
+#include "simulation/closed_pieces.hpp"
 
 #include <echinus/error.hpp>
 
@@ -173,6 +174,9 @@ void require_jakobsen(const Deformable& deformable, const SimulationOptions& opt
     };
     refuse(!deformable.tetrahedra.empty(),
            "the deformable has tetrahedra, and the jakobsen solver has sticks only; leave them out");
+    refuse(options.pressure > 0,
+           "simulation option pressure is positive, and the jakobsen solver has none; leave "
+           "it out");
     refuse(!deformable.handles.empty(), "the deformable has handles, and the jakobsen solver holds what is "
                                         "pinned or attached; leave them out");
     refuse(options.surface_collision, "simulation option surface_collision is true, and under the jakobsen "
@@ -186,6 +190,10 @@ void require_jakobsen(const Deformable& deformable, const SimulationOptions& opt
 
 void require_solver(const Deformable& deformable, const SimulationOptions& options) {
     if (options.solver == SolverKind::Jakobsen) require_jakobsen(deformable, options);
+    require_option(
+        !(options.pressure > 0) || !closed_pieces(deformable).empty(),
+        "simulation option pressure is positive, and no piece of the cloth is closed; close one, or "
+        "leave the pressure out");
 }
 
 namespace {

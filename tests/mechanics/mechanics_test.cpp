@@ -138,6 +138,36 @@ TEST(Mechanics, TheGradientIsTheDerivativeOfTheEnergy) {
         }
 }
 
+TEST(Mechanics, TheForcesOfAPressureAreTheDerivativeOfItsWorkAndBalance) {
+    // The boundary of a tetrahedron, far from the origin.
+    Pressure pressure({{{0, 2, 1}, 300}, {{0, 1, 3}, 300}, {{1, 2, 3}, 300}, {{2, 0, 3}, 300}}, 4);
+    Random random(5);
+    std::vector<Vec3d> places{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, direction;
+    for (Vec3d& place : places) place += Vec3d{1e4, 0, 0} + random_vector(random, 0.1);
+    for (std::size_t i = 0; i < places.size(); ++i) direction.push_back(random_vector(random, 1));
+    pressure.begin_step(places);
+    const Workers workers;
+    const auto energy_at = [&](double by) {
+        std::vector<Vec3d> moved = places;
+        for (std::size_t i = 0; i < moved.size(); ++i) moved[i] += direction[i] * by;
+        return pressure.energy(moved, workers);
+    };
+    std::vector<Vec3d> gradient(places.size());
+    pressure.add_gradient(places, gradient, workers);
+    double slope = 0;
+    Vec3d force, torque;
+    for (std::size_t i = 0; i < places.size(); ++i) {
+        slope += dot(gradient[i], direction[i]);
+        force += gradient[i];
+        torque += cross(places[i] - places[0], gradient[i]);
+    }
+    EXPECT_NEAR(slope, (energy_at(1e-5) - energy_at(-1e-5)) / 2e-5, 1e-4 * std::abs(slope));
+    EXPECT_LT(length(force), 1e-9);
+    EXPECT_LT(length(torque), 1e-9);
+    const double volume = dot(places[1] - places[0], cross(places[2] - places[0], places[3] - places[0])) / 6;
+    EXPECT_NEAR(pressure.energy(places, workers), -300 * volume, 1e-6);
+}
+
 TEST(Mechanics, TheGradientWithTheHessianIsTheSame) {
     for (const ElasticParts& parts : all_parts()) {
         Trial trial(parts, 3, 0.02);

@@ -178,7 +178,7 @@ echinus_soft_body_options as_c(const SoftBodyOptions& options);
 /// @throws WrongArgument
 SoftBodyOptions options_from(const echinus_soft_body_options* options);
 
-ECHINUS_REQUIRE_NO_PADDING_AFTER(echinus_simulation_options, wind_rate);
+ECHINUS_REQUIRE_NO_PADDING_AFTER(echinus_simulation_options, pressure);
 /// Calls use() with each member of the structs of C and of C++, either of which may be constant.
 template <typename C, typename Options, typename Use>
 requires std::same_as<std::remove_const_t<C>, echinus_simulation_options> &&
@@ -213,6 +213,7 @@ void for_each_option(C& c, Options& o, const Use& use) {
     use("air_drag", c.air_drag, o.air_drag, Limits{0, 1e6});
     use("wind", c.wind, o.wind, Limits{-1e9, 1e9});
     use("wind_rate", c.wind_rate, o.wind_rate, Limits{0, 1e9});
+    use("pressure", c.pressure, o.pressure, Limits{0, 1e9});
 }
 echinus_simulation_options as_c(const SimulationOptions& options);
 /// @param options  may be null, for the defaults

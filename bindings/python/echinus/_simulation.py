@@ -58,6 +58,7 @@ class SimulationOptions:
     air_drag: float
     wind: Vector
     wind_rate: float
+    pressure: float
     threads: int
 
 
@@ -180,6 +181,9 @@ class Simulation:
     wind_rate
         Of the air's velocity across a face, along its normal, particles take on so much per second: the higher, the
         lighter the cloth. 0: no air. Without ``wind`` the air is at rest and brakes (0 to 1e9 1/s).
+    pressure
+        ``newton`` only: pressure inside the closed pieces of cloth, beyond that around them; constant, as that of a
+        pump (0 to 1e9 N/m^2).
     threads
         Threads that compute a frame; 0: all cores. The same bits with any number (0 to 1024).
 
@@ -226,6 +230,7 @@ class Simulation:
         air_drag: float = 0.5,
         wind: Sequence[float] = (0, 0, 0),
         wind_rate: float = 0,
+        pressure: float = 0,
         threads: int = 1,
     ) -> None:
         options = dict(locals())

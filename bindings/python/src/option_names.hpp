@@ -129,6 +129,7 @@ void for_each_option(Options& o, const Use& use) {
     use("air_drag", o.air_drag);
     use("wind", o.wind);
     use("wind_rate", o.wind_rate);
+    use("pressure", o.pressure);
 }
 
 /// Calls use() with the name and the defaults of each struct.

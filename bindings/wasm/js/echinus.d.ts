@@ -586,6 +586,11 @@ export interface SceneDescription {
         bending_stiffness?: number;
         /** Viscosity of the cloth over its stiffness (0 to 1e6 s). Default: 0.01. */
         damping?: number;
+        /**
+         * `newton` only: pressure inside the closed pieces of cloth, beyond that around them; constant, as that of a
+         * pump (0 to 1e9 N/m^2). Default: 0.
+         */
+        pressure?: number;
         // End of options.
         // Options: material. By bindings/generate_options from bindings/options.toml: edit that.
         /**

@@ -96,7 +96,7 @@ static_assert(sizeof(echinus_deformable_arrays) == 60 && offsetof(echinus_deform
               offsetof(echinus_deformable_arrays, tetrahedron_count) == 48 &&
               offsetof(echinus_deformable_arrays, filters) == 52 &&
               offsetof(echinus_deformable_arrays, filter_count) == 56);
-static_assert(sizeof(echinus_simulation_options) == 248 && offsetof(echinus_simulation_options, size) == 0 &&
+static_assert(sizeof(echinus_simulation_options) == 256 && offsetof(echinus_simulation_options, size) == 0 &&
               offsetof(echinus_simulation_options, time_step) == 8 &&
               offsetof(echinus_simulation_options, solver) == 16 &&
               offsetof(echinus_simulation_options, iteration_count) == 20 &&
@@ -125,7 +125,8 @@ static_assert(sizeof(echinus_simulation_options) == 248 && offsetof(echinus_simu
               offsetof(echinus_simulation_options, newton_tolerance) == 200 &&
               offsetof(echinus_simulation_options, air_drag) == 208 &&
               offsetof(echinus_simulation_options, wind) == 216 &&
-              offsetof(echinus_simulation_options, wind_rate) == 240);
+              offsetof(echinus_simulation_options, wind_rate) == 240 &&
+              offsetof(echinus_simulation_options, pressure) == 248);
 static_assert(sizeof(echinus_simulation_profile) == 96 && offsetof(echinus_simulation_profile, size) == 0 &&
               offsetof(echinus_simulation_profile, integration_seconds) == 8 &&
               offsetof(echinus_simulation_profile, constraint_seconds) == 16 &&

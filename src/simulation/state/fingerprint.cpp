@@ -58,7 +58,7 @@ std::uint64_t hash_of(const SimulationOptions& options) {
         hasher.add(options.material.density, options.material.stretch_stiffness,
                    options.material.shear_stiffness, options.material.bending_stiffness,
                    options.material.damping, options.newton_step_count, options.newton_tolerance,
-                   options.air_drag);
+                   options.air_drag, options.pressure);
     return hasher.hash();
 }
 

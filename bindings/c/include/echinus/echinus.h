@@ -1175,6 +1175,9 @@ typedef struct echinus_simulation_options {
     /// Of the air's velocity across a face, along its normal, particles take on so much per second: the
     /// higher, the lighter the cloth. 0: no air. Without wind the air is at rest and brakes (0 to 1e9 1/s)
     double wind_rate;
+    /// Newton only: pressure inside the closed pieces of cloth, beyond that around them; constant, as that of
+    /// a pump (0 to 1e9 N/m^2)
+    double pressure;
 } echinus_simulation_options;
 
 ECHINUS_API void echinus_simulation_options_init(echinus_simulation_options* options, size_t size);
