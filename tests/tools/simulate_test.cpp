@@ -117,13 +117,13 @@ TEST_F(SimulateCommand, DrapesTheSmallClothOnTheHorseAsEverBefore) {
 }
 
 TEST_F(SimulateCommand, ReportsTheLoadOnEachColliderUnderTheNewtonSolver) {
-    const auto load = [&](const std::string& keys) {
+    const auto load = [&](const std::string& keys, const std::vector<std::string>& options = {}) {
         write("scene.json",
               R"({"colliders": [{"model": {"box": {}}}, {"model": {"box": {}}, "position": [0, 0, 9]}],
             "cloth": {"particles": [5, 5], "size": [0.4, 0.4], "position": [0, 0, 0.51], "thickness": 0.01},
             "frame_limit": 90)" +
                   keys + "}");
-        return simulate("scene.json").at("colliders");
+        return simulate("scene.json", options).at("colliders");
     };
     const nlohmann::json measured = load("");
     const double weight = 0.2 * 0.4 * 0.4 * 9.81; // of the material's density
@@ -131,6 +131,22 @@ TEST_F(SimulateCommand, ReportsTheLoadOnEachColliderUnderTheNewtonSolver) {
     EXPECT_EQ(measured[1].at("load").at("force"), nlohmann::json({0.0, 0.0, 0.0}));
     EXPECT_EQ(measured[0].at("load").at("torque").size(), 3u);
     EXPECT_TRUE(load(R"(, "solver": "jakobsen")")[0].at("load").is_null());
+    EXPECT_TRUE(load(R"(, "solver": "jakobsen")")[0].at("loads").is_null());
+    // Over time it is the same as the change of momentum: the cloth begins and ends at rest.
+    const nlohmann::json& loads = measured[0].at("loads");
+    ASSERT_EQ(loads.size(), measured[1].at("loads").size());
+    double sum = 0;
+    for (const nlohmann::json& saved : loads) sum += saved.at("force")[2].get<double>();
+    EXPECT_NEAR(sum / static_cast<double>(loads.size()), -weight, 0.02 * weight);
+    EXPECT_EQ(loads.back().at("force"), measured[0].at("load").at("force"));
+    EXPECT_EQ(loads.front().at("frame"), 1);
+    // Of every tenth frame the mean is that of ten.
+    const nlohmann::json tenth = load(R"(, "at_rest": {"frames": 1000})", {"--every", "10"})[0].at("loads");
+    ASSERT_EQ(tenth.size(), 9u);
+    double first_ten = 0;
+    for (std::size_t i = 0; i < 10; ++i) first_ten += loads[i].at("force")[2].get<double>() / 10;
+    EXPECT_NEAR(tenth[0].at("force")[2].get<double>(), first_ten, 1e-9);
+    EXPECT_EQ(tenth[0].at("frame"), 10);
 }
 
 TEST_F(SimulateCommand, WritesTheClothItsMotionTheColliderAndAReport) {

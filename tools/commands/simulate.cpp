@@ -133,6 +133,7 @@ struct Results {
 
 struct Course {
     std::vector<std::vector<SavedPose>> poses; ///< by collider
+    std::vector<std::vector<SavedLoad>> loads; ///< by collider
     std::uint64_t most_truncated = 0;          ///< vertices in one frame
     std::optional<WorstFrames> worst;
 };
@@ -141,6 +142,35 @@ bool has_moved(const RigidTransform& from, const RigidTransform& to) {
     const Rotation &a = from.rotation, &b = to.rotation;
     return from.translation != to.translation || a.w != b.w || a.x != b.x || a.y != b.y || a.z != b.z;
 }
+
+/// Sums up the loads on colliders from one saved frame to the next.
+class LoadMeter {
+  public:
+    explicit LoadMeter(const Simulation& simulation)
+        : simulation_(&simulation), sums_(simulation.colliders().size()) {}
+
+    void add_frame() {
+        for (std::size_t c = 0; c < sums_.size(); ++c) {
+            const Load load = simulation_->load_on(c);
+            sums_[c].force += load.force;
+            sums_[c].torque += load.torque;
+        }
+        ++frame_count_;
+    }
+    void save_to(std::vector<std::vector<SavedLoad>>& loads) {
+        for (std::size_t c = 0; c < sums_.size(); ++c) {
+            const auto& [force, torque] = std::exchange(sums_[c], {});
+            loads[c].push_back(
+                {simulation_->frame(), {force * (1.0 / frame_count_), torque * (1.0 / frame_count_)}});
+        }
+        frame_count_ = 0;
+    }
+
+  private:
+    const Simulation* simulation_;
+    std::vector<Load> sums_; ///< by collider
+    int frame_count_ = 0;
+};
 
 /// Counts the pairs of faces that intersect in a frame.
 class FrameJudge {
@@ -178,6 +208,8 @@ Course run(Simulation& simulation, Results& results, std::uint32_t frame_limit, 
         if (results.page) results.page->recording->add_pairs(simulation.frame(), *pairs);
     };
     for (const Collider& collider : colliders) course.poses.push_back({{simulation.frame(), collider.pose}});
+    course.loads.resize(colliders.size());
+    LoadMeter loads(simulation);
     results.watch(simulation, stride);
     judge_frame();
     while (simulation.frame() < frame_limit && !simulation.at_rest()) {
@@ -186,9 +218,11 @@ Course run(Simulation& simulation, Results& results, std::uint32_t frame_limit, 
             simulation.step();
             course.most_truncated =
                 std::max(course.most_truncated, simulation.profile().truncated_count - truncated_before);
+            loads.add_frame();
             results.watch(simulation, stride);
         } while (simulation.frame() % stride != 0);
         judge_frame();
+        loads.save_to(course.loads);
         for (std::size_t c = 0; c < colliders.size(); ++c)
             if (has_moved(course.poses[c].back().pose, colliders[c].pose))
                 course.poses[c].push_back({simulation.frame(), colliders[c].pose});
@@ -289,7 +323,8 @@ std::vector<ColliderResult> results_of(const LoadedColliders& colliders, Course&
                            .cache_name = colliders.deforms(c) ? collider_file(c, "pc2") : "",
                            .model = inspect(colliders.judged[c].mesh),
                            .radius = inspect(colliders.mesh_at(c, 0)).bounding_sphere.radius,
-                           .poses = std::move(course.poses[c])});
+                           .poses = std::move(course.poses[c]),
+                           .loads = std::move(course.loads[c])});
     return results;
 }
 

@@ -71,11 +71,19 @@ Json json_of(const Vec3d& v) {
     return {v.x, v.y, v.z};
 }
 
-/// In the last frame. Null under a solver that measures none.
-Json json_of_load(const Simulation& simulation, std::size_t collider) {
-    if (simulation.options().solver != SolverKind::Newton) return nullptr;
-    const Load load = simulation.load_on(collider);
+Json json_of(const Load& load) {
     return {{"force", json_of(load.force)}, {"torque", json_of(load.torque)}};
+}
+
+Json json_of(const std::vector<SavedLoad>& loads) {
+    Json list = Json::array();
+    for (const auto& [frame, load] : loads) {
+        Json saved{{"frame", frame}};
+        saved.add("force", json_of(load.force));
+        saved.add("torque", json_of(load.torque));
+        list.push_back(saved);
+    }
+    return list;
 }
 
 Json json_of(const std::vector<SavedPose>& poses) {
@@ -140,7 +148,9 @@ Json json_of(const std::vector<ColliderResult>& colliders, const Simulation& sim
     Json list = Json::array();
     for (std::size_t c = 0; c < colliders.size(); ++c) {
         Json collider = json_of(colliders[c], let_through(simulation.deformable(), c));
-        collider.add("load", json_of_load(simulation, c));
+        const bool are_measured = simulation.options().solver == SolverKind::Newton;
+        collider.add("load", are_measured ? json_of(simulation.load_on(c)) : Json(nullptr));
+        collider.add("loads", are_measured ? json_of(colliders[c].loads) : Json(nullptr));
         list.push_back(std::move(collider));
     }
     return list;

@@ -17,6 +17,12 @@ struct SavedPose {
     echinus::RigidTransform pose;
 };
 
+/// The load on a collider in the frames since the one before that was saved, as their mean.
+struct SavedLoad {
+    std::uint32_t frame;
+    echinus::Load load;
+};
+
 /// What is said about a collider.
 struct ColliderResult {
     std::string mesh_name;        ///< of the file in the folder
@@ -24,6 +30,7 @@ struct ColliderResult {
     echinus::MeshReport model;    ///< as read
     double radius;                ///< R in the world
     std::vector<SavedPose> poses; ///< one when it stands still
+    std::vector<SavedLoad> loads; ///< of each saved frame; none under a solver that measures none
 };
 
 /// Of the frames that were judged, the one with the most pairs of faces that intersect.
