@@ -268,7 +268,7 @@ struct SimulationOptions {
 /// A force and a torque that bear on a collider, in the world's axes.
 struct Load {
     Vec3d force;  ///< N
-    Vec3d torque; ///< N m, about where the pose's translation was when the frame began
+    Vec3d torque; ///< N m, about the pose's translation, as it moves
 };
 
 /// Times and counts of step() since the simulation began. Times are not part of the result.
@@ -394,7 +394,7 @@ class Simulation {
     /// XXH64 of the bits of all positions and previous positions.
     std::uint64_t state_hash() const;
 
-    // Steering colliders. Of these three the last one called holds; each needs collider_index <
+    // Steering colliders. Of these four the last one called holds; each needs collider_index <
     // colliders().size().
 
     /// The collider keeps these velocities.
@@ -414,6 +414,14 @@ class Simulation {
     /// @throws Error InvalidOptions, naming the key, when a time or a pose is not finite, a rotation not of
     /// unit length to 1e-4, or a time not later than the one before it
     void set_collider_keyframes(std::size_t collider_index, std::vector<PoseKey> keys);
+
+    /// Newton: the collider goes on freely from its velocities, as a solid of uniform density: by gravity
+    /// and, in each frame, by the load of the frame before. So it is to weigh no less than the part of the
+    /// deformable that it touches, or takes smaller time steps. Other colliders do not stop it.
+    /// @param mass  kg
+    /// @throws Error InvalidOptions when the mass is not positive and finite, the solver is Jakobsen, or the
+    /// collider has no exact map, or one of an open mesh
+    void set_collider_free(std::size_t collider_index, double mass);
 
     /// Newton: sets colliders, the deformable or both elsewhere, at once where its time has come, else in the
     /// frame of its time. Velocities stay as they are, but for their directions; a collider that goes without

@@ -118,6 +118,7 @@ struct SceneCollider {
     Vec3d angular_velocity;         ///< radians per second
     std::vector<PoseKey> keyframes; ///< in place of velocities, where there are any
     std::optional<CacheFile> cache; ///< the model deforms
+    std::optional<double> mass;     ///< kg: it moves freely, from its velocities
 };
 
 /// The complete initial state of a simulation. A scene that was read is complete, with each number in its

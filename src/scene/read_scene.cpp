@@ -22,6 +22,7 @@ constexpr Range kLength{1e-9, 1e9};
 constexpr Range kSegmentCount{1, 4096};
 constexpr Range kDegrees{-1e6, 1e6};
 constexpr Range kTime{-1e9, 1e9};
+constexpr Range kMass{1e-9, 1e15};
 /// Of the square of a quaternion's length.
 constexpr double kUnitTolerance = 1e-4;
 /// Unless a scene says otherwise: its sticks need a smaller one than the options have.
@@ -262,8 +263,10 @@ void read_motion(JsonObject& object, SceneCollider& collider) {
     read_scale(object, collider.scale);
     collider.cache = read_cache(object);
     collider.keyframes = read_keyframes(object);
+    object.read("mass", collider.mass, kMass);
+    if (collider.mass && collider.cache) object.refuse("mass", "left out where the model deforms by a cache");
     if (!collider.keyframes.empty()) {
-        for (const char* key : {"position", "rotation", "linear_velocity", "angular_velocity"})
+        for (const char* key : {"position", "rotation", "linear_velocity", "angular_velocity", "mass"})
             if (object.has(key)) object.refuse(key, "left out where there are keyframes");
         collider.pose = pose_at(collider.keyframes, 0);
         return;
@@ -537,6 +540,9 @@ void read_solver(JsonObject& root, Scene& scene) {
                                               "used; write \"newton\", or \"jakobsen\" for the "
                                               "paper's sticks"));
     read_solver_options(root, options);
+    for (const SceneCollider& collider : scene.colliders)
+        if (collider.mass && options.solver != SolverKind::Newton)
+            root.refuse("solver", "\"newton\" or left out where a collider has a mass");
     if (options.solver == SolverKind::Newton) ignore(root, kOfTheScene, scene);
     ignore(root, kOfTheSceneBefore, scene);
     if (options.wind != Vec3d{}) root.require("wind_rate");

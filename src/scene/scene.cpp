@@ -119,6 +119,8 @@ Simulation make_simulation(const Scene& scene, std::span<const ColliderMap> maps
             simulation.set_collider_keyframes(c, scene.colliders[c].keyframes);
     for (std::size_t c = 0; c < maps.size(); ++c)
         if (scene.colliders[c].cache) simulation.set_collider_cache(c, caches[c]);
+    for (std::size_t c = 0; c < maps.size(); ++c)
+        if (scene.colliders[c].mass) simulation.set_collider_free(c, *scene.colliders[c].mass);
     for (const Teleport& teleport : scene.teleports) simulation.teleport(teleport);
     return simulation;
 }

@@ -26,6 +26,7 @@ void ColliderMotions::lead_to(std::size_t collider, const std::string& name, con
     Motion& motion = motions_[collider];
     motion.is_led = true;
     motion.keys.clear();
+    motion.body.reset();
     motion.next = pose;
     motion.next->rotation = pose.rotation.normalised();
 }
@@ -33,13 +34,16 @@ void ColliderMotions::lead_to(std::size_t collider, const std::string& name, con
 void ColliderMotions::follow(std::size_t collider, const std::string& name, std::vector<PoseKey> keys) {
     require_valid(keys, name);
     for (PoseKey& key : keys) key.pose.rotation = key.pose.rotation.normalised();
-    motions_[collider] = {.is_led = true, .next = {}, .keys = std::move(keys), .last = {}};
+    motions_[collider] = {.is_led = true, .next = {}, .keys = std::move(keys), .last = {}, .body = {}};
 }
 
-void ColliderMotions::begin_frame(std::vector<Collider>& colliders, double end_time, double frame_seconds) {
+void ColliderMotions::begin_frame(std::vector<Collider>& colliders, double end_time, double frame_seconds,
+                                  std::span<const Load> loads, const Vec3d& gravity) {
     for (std::size_t c = 0; c < motions_.size(); ++c) {
         Motion& motion = motions_[c];
         if (!motion.is_led) continue;
+        if (motion.body)
+            motion.next = motion.body->after(colliders[c].pose, loads[c], gravity, frame_seconds);
         if (!motion.keys.empty()) motion.next = pose_at(motion.keys, end_time);
         // A collider that stays where it was led does not move at all, not even by what was rounded.
         if (motion.next && !(motion.last && same(*motion.next, *motion.last)))
@@ -55,11 +59,13 @@ void ColliderMotions::move(std::size_t collider, const RigidTransform& motion) {
     for (PoseKey& key : led.keys) key.pose = after(motion, key.pose);
     if (led.next) led.next = after(motion, *led.next);
     if (led.last) led.last = after(motion, *led.last);
+    if (led.body) led.body->turn(motion.rotation);
 }
 
-bool ColliderMotions::all_arrived(double time) const {
+bool ColliderMotions::all_arrived(double time, double rest_speed) const {
     return std::all_of(motions_.begin(), motions_.end(), [&](const Motion& motion) {
-        return motion.keys.empty() || motion.keys.back().time <= time;
+        return (motion.keys.empty() || motion.keys.back().time <= time) &&
+               (!motion.body || motion.body->is_slower_than(rest_speed));
     });
 }
 
@@ -69,6 +75,7 @@ void ColliderMotions::archive(StateArchive& state) {
         const auto pose = [&](RigidTransform& place) { state.pose(place); };
         state.optional(motion.next, pose);
         state.optional(motion.last, pose);
+        state.optional(motion.body, [&](RigidBody& body) { body.archive(state); });
         state.items(motion.keys, [&](PoseKey& key) {
             state.value(key.time);
             state.pose(key.pose);

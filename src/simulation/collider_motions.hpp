@@ -1,11 +1,13 @@
 #pragma once
 
+#include "simulation/rigid_body.hpp"
 #include "simulation/state/state_archive.hpp"
 
 #include <echinus/collider.hpp>
 
 #include <cstddef>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -30,20 +32,27 @@ class ColliderMotions {
     /// All that leads a collider is elsewhere.
     void move(std::size_t collider, const RigidTransform& motion);
 
-    /// Gives the colliders that are led the velocities of the frame that begins.
+    void set_free(std::size_t collider, const RigidBody& body) {
+        motions_[collider] = {.is_led = true, .next = {}, .keys = {}, .last = {}, .body = body};
+    }
+
+    /// Gives the colliders that are led or free the velocities of the frame that begins.
     /// @param end_time  when the frame ends, seconds since the simulation began
-    void begin_frame(std::vector<Collider>& colliders, double end_time, double frame_seconds);
-    /// Has every collider that follows keys come to its last one?
-    bool all_arrived(double time) const;
+    /// @param loads     of the frame before, by collider
+    void begin_frame(std::vector<Collider>& colliders, double end_time, double frame_seconds,
+                     std::span<const Load> loads, const Vec3d& gravity);
+    /// Has every collider that follows keys come to its last one, and every free one to rest?
+    bool all_arrived(double time, double rest_speed) const;
 
     void archive(StateArchive& state);
 
   private:
     struct Motion {
-        bool is_led = false; ///< by a pose or by keys
+        bool is_led = false; ///< by a pose or by keys, or it is free
         std::optional<RigidTransform> next;
         std::vector<PoseKey> keys;
         std::optional<RigidTransform> last; ///< where the frame before led
+        std::optional<RigidBody> body;      ///< it is free
     };
     std::vector<Motion> motions_; ///< one for each collider
 };

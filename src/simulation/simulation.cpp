@@ -70,6 +70,10 @@ void Simulation::set_collider_keyframes(std::size_t collider_index, std::vector<
     solver_->motions.follow(collider_index, solver_->name_of_collider(collider_index), std::move(keys));
 }
 
+void Simulation::set_collider_free(std::size_t collider_index, double mass) {
+    solver_->set_free(collider_index, mass);
+}
+
 void Simulation::teleport(const Teleport& teleport) {
     solver_->teleport(teleport);
 }

@@ -5,6 +5,7 @@
 #include "simulation/start_state.hpp"
 #include "simulation/surfaces/edge_lengths.hpp"
 #include "simulation/surfaces/elements.hpp"
+#include "simulation/surfaces/model_mesh.hpp"
 #include "simulation/untangle.hpp"
 #include "simulation/validation.hpp"
 
@@ -118,10 +119,23 @@ void Solver::prepare_next_frame() {
 void Solver::move_colliders_on() {
     handles_.begin_frame(frame * options.time_step,
                          [&](std::uint32_t particle) { set_held(particle, false); });
-    motions.begin_frame(colliders, (frame + 1.0) * options.time_step, options.time_step);
+    std::vector<Load> loads;
+    for (std::size_t c = 0; c < colliders.size(); ++c) loads.push_back(load_on(c));
+    motions.begin_frame(colliders, (frame + 1.0) * options.time_step, options.time_step, loads,
+                        options.gravity);
     for (std::size_t i = 0; i < colliders.size(); ++i)
         if (!Bounds::contain_way(colliders[i], options.time_step))
             bounds_.diverge(frame, name_of_collider(i) + " left all bounds; try a smaller velocity");
+}
+
+void Solver::set_free(std::size_t collider, double mass) {
+    const std::string name = name_of_collider(collider);
+    require_option(options.solver == SolverKind::Newton,
+                   name + " cannot be free under the jakobsen solver, which measures no loads; use newton");
+    const ExactMap* const map = map_of_surface(colliders[collider]);
+    require_option(map != nullptr, name + " has no exact map, of which its centre of mass and inertia are");
+    motions.set_free(collider, RigidBody(model_mesh(map->view(), colliders[collider].scale), mass,
+                                         colliders[collider], name));
 }
 
 /// From now on the collider's surface deforms, if only a little, unless lead() throws.
@@ -160,7 +174,7 @@ void Solver::follow_cache(std::size_t collider, VertexCache cache) {
 
 bool Solver::all_arrived() const {
     const double time = frame * options.time_step;
-    return motions.all_arrived(time) && handles_.all_done(time) && teleports_.empty() &&
+    return motions.all_arrived(time, options.rest.speed) && handles_.all_done(time) && teleports_.empty() &&
            std::all_of(deforming_.begin(), deforming_.end(),
                        [&](const auto& collider) { return !collider || collider->has_arrived(time); });
 }

@@ -39,6 +39,8 @@ class Solver {
     /// Of all that decides how the simulation goes on. Reading may leave a part of it when it throws.
     virtual void archive(StateArchive& state) = 0;
 
+    /// @throws Error InvalidOptions
+    void set_free(std::size_t collider, double mass);
     /// At once, or in the frame of its time. @throws Error InvalidOptions; then it is forgotten
     void teleport(const Teleport& teleport);
     /// Those of the frame that comes. The same.

@@ -200,6 +200,35 @@ TEST(SceneTeleports, SetClothAndModelElsewhereAtTheirTime) {
     EXPECT_NEAR(length(simulation.colliders()[0].pose.translation - Vec3d{5, 0, -3}), 0, 1e-12);
 }
 
+TEST(SceneMass, SetsAColliderFree) {
+    const Scene scene =
+        parse_scene(R"({"colliders": [{"model": {"box": {}}, "mass": 2, "linear_velocity": [1, 0, 0]},
+        {"model": {"box": {}}, "position": [5, 5, 5]}], "cloth": {"size": [1, 1], "particles": [5, 5], "position": [0, 0, -9]}})",
+                    "a.json");
+    EXPECT_EQ(scene.colliders[0].mass, 2);
+    EXPECT_FALSE(scene.colliders[1].mass);
+    const ColliderMap box = ExactMap::build(make_box({1, 1, 1}));
+    Simulation simulation = make_simulation(scene, std::vector{box, box});
+    for (int i = 0; i < 30; ++i) simulation.step();
+    EXPECT_NEAR(simulation.colliders()[0].pose.translation.x, 0.5, 1e-9);
+    EXPECT_LT(simulation.colliders()[0].pose.translation.z, -1);
+    EXPECT_EQ(simulation.colliders()[1].pose.translation, (Vec3d{5, 5, 5}));
+    const auto expect_words = [](const std::string& words, const std::string& collider,
+                                 const std::string& more = "") {
+        test::expect_error(ErrorCode::InvalidScene, words, [&] {
+            parse_scene(R"({"model": {"box": {}}, "cloth": {"size": [1, 1]}, "collider": {)" + collider +
+                            "}" + more + "}",
+                        "a.json");
+        });
+    };
+    expect_words("collider.mass is 0; it must be a number from", R"("mass": 0)");
+    expect_words("collider.mass is 1; it must be left out where there are keyframes",
+                 R"("mass": 1, "keyframes": [{"time": 0}])");
+    expect_words("collider.mass is 1; it must be left out where the model deforms",
+                 R"("mass": 1, "cache": "a.pc2")");
+    expect_words("solver is \"jakobsen\"", R"("mass": 1)", R"(, "solver": "jakobsen")");
+}
+
 TEST(SceneTeleports, AreRefusedByTheirKeys) {
     const auto expect_words = [](const std::string& words, const std::string& teleports,
                                  const std::string& more = "") {

@@ -86,7 +86,7 @@ class Load(NamedTuple):
     force
         mass * length / s^2, with masses in the unit in which inverse masses are their inverses.
     torque
-        About where the collider's position was when the frame began.
+        About the collider's position, as it moves.
     """
 
     force: Vector

@@ -1316,7 +1316,7 @@ ECHINUS_API echinus_status echinus_simulation_set_collider_cache(echinus_simulat
 /// The load that the deformable put on a collider in the last frame by contact and friction, as its mean over
 /// the frame; 0 before the first, and always under ECHINUS_SOLVER_JAKOBSEN.
 /// @param force   [3] out, N
-/// @param torque  [3] out, N m, about where the pose's translation was when the frame began
+/// @param torque  [3] out, N m, about the pose's translation, as it moves
 ECHINUS_API echinus_status echinus_simulation_load_on(const echinus_simulation* simulation, size_t index,
                                                       double* force, double* torque);
 
