@@ -54,6 +54,7 @@ void ImplicitStep::begin(const Motion& motion, std::span<const Vec3d> accelerati
                          std::span<const std::uint8_t> is_held, double step, double drag) {
     is_held_ = is_held;
     elastic_.begin_step(motion.places, step);
+    total_inertia_ = 0;
     for (std::size_t i = 0; i < masses_.size(); ++i) {
         const Vec3d place = motion.places[i], velocity = motion.velocities[i];
         // The step in seconds that the velocity at its end has acted, and the places and velocities before
@@ -68,6 +69,7 @@ void ImplicitStep::begin(const Motion& motion, std::span<const Vec3d> accelerati
         // Drag pulls towards `from` as a spring of m * drag / seconds.
         const double kept = 1 / (1 + drag * seconds);
         inertia_[i] = masses_[i] / (seconds * seconds * kept);
+        if (is_held_[i] == 0) total_inertia_ += inertia_[i];
         inertial_[i] = from + (velocity_from + accelerations[i] * seconds) * (seconds * kept);
     }
 }
@@ -154,15 +156,13 @@ StepReport ImplicitStep::solve(std::span<Vec3d> places, const ContactEnergy* con
         for (std::size_t i = 0; i < masses_.size(); ++i) right_side_[i] = Float4(-gradient_[i]);
         report.linear_iterations += linear_.solve(hessian_, multigrid_, right_side_, direction_,
                                                   budget.linear_iterations, budget.linear_tolerance, workers);
-        double slope = 0, longest_sq = 0;
-        for (std::size_t i = 0; i < masses_.size(); ++i) {
-            const Vec3d move = direction_[i].to_double();
-            slope += dot(gradient_[i], move);
-            longest_sq = std::max(longest_sq, dot(move, move));
-        }
+        double slope = 0;
+        for (std::size_t i = 0; i < masses_.size(); ++i)
+            slope += dot(gradient_[i], direction_[i].to_double());
         ++report.newton_steps;
         const double share = search(places, contacts, slope, energy, report, workers);
-        report.last_move = share * std::sqrt(longest_sq);
+        // The Hessian of the energy is nowhere less than that of inertia.
+        report.last_move = share * std::sqrt(std::max(-slope, 0.0) / total_inertia_);
         if (report.last_move < budget.tolerance) break;
     }
     return report;

@@ -38,14 +38,15 @@ class ContactEnergy {
 /// The bound of a step's cost. It ends earlier where it has converged.
 struct StepBudget {
     std::uint32_t newton_steps = 2;
-    std::uint32_t linear_iterations = 16; ///< at most, of each
+    std::uint32_t linear_iterations = 64; ///< at most, of each
     double linear_tolerance = 1e-2;       ///< of the residual, relative
-    double tolerance = 1e-6; ///< a Newton step that moves nothing farther than this is the last; length
+    double tolerance = 1e-6; ///< a Newton step that moves particles less than this is the last, in the
+                             ///< root mean square that is possible by the energy it gains; length
 };
 
 struct StepReport {
     std::uint32_t newton_steps = 0, linear_iterations = 0, halvings = 0;
-    double last_move = 0; ///< the largest displacement of a particle in the last Newton step
+    double last_move = 0; ///< in the last Newton step, as the budget's tolerance
 };
 
 /// Steps of a deformable's motion: each finds a minimum of
@@ -100,6 +101,7 @@ class ImplicitStep {
     std::span<const std::uint8_t> is_held_;
     std::vector<Vec3d> inertial_; ///< y
     std::vector<double> inertia_; ///< c m / h^2
+    double total_inertia_ = 0;    ///< of what is not held
     std::vector<Vec3d> gradient_, trial_;
     std::vector<Float4> right_side_, direction_;
 };

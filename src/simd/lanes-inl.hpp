@@ -46,6 +46,10 @@ HWY_INLINE PointLanes splat(const Vec3f& v) {
 HWY_INLINE IntLanes splat_int(std::int32_t value) {
     return hn::Set(kInt, value);
 }
+/// @pre none is above 2^31
+HWY_INLINE IntLanes load_indices(const std::uint32_t* from) {
+    return hn::BitCast(kInt, hn::LoadU(hn::RebindToUnsigned<Ints>(), from));
+}
 HWY_INLINE FloatMask as_mask(IntMask mask) {
     return hn::RebindMask(kFloat, mask);
 }

@@ -91,7 +91,7 @@ constexpr double kThin = 0.003;
 
 /// [frame] where the middle of a deformable is that slides along x over a layer that is pinned, beginning
 /// with its start.
-std::vector<float> slid_over(Deformable layer, Deformable slider, double speed, double seconds,
+std::vector<Vec3d> slid_over(Deformable layer, Deformable slider, double speed, double seconds,
                              SimulationOptions options) {
     options.air_drag = 0;
     options.thickness = options.self_thickness = kThin;
@@ -103,12 +103,12 @@ std::vector<float> slid_over(Deformable layer, Deformable slider, double speed, 
     const std::vector<Deformable> parts{layer, slider};
     Simulation simulation(combine(parts), {}, options);
     const auto middle = [&] {
-        double sum = 0;
+        Vec3d sum;
         for (std::size_t i = first; i < simulation.positions().size(); ++i)
-            sum += static_cast<double>(simulation.positions()[i].x);
-        return static_cast<float>(sum / static_cast<double>(slider.particle_count()));
+            sum += Vec3d(simulation.positions()[i]);
+        return sum * (1 / static_cast<double>(slider.particle_count()));
     };
-    std::vector<float> middles{middle()};
+    std::vector<Vec3d> middles{middle()};
     while (simulation.frame() * options.time_step < seconds) {
         simulation.step();
         middles.push_back(middle());
@@ -117,13 +117,13 @@ std::vector<float> slid_over(Deformable layer, Deformable slider, double speed, 
     return middles;
 }
 
-std::vector<float> sheet_slid_over_sheet(double speed, double friction, double seconds) {
+std::vector<Vec3d> sheet_slid_over_sheet(double speed, double friction, double seconds) {
     const Deformable layer = make_cloth(
         {.column_count = 61, .row_count = 13, .width = 3, .height = 0.6, .pose = {Rotation{}, {1.2, 0, 0}}});
     return slid_over(layer, sheet_at(1.05 * kThin, 0.2, 8), speed, seconds, {.friction = friction});
 }
 
-std::vector<float> block_slid_over_block(double speed, double friction, double seconds) {
+std::vector<Vec3d> block_slid_over_block(double speed, double friction, double seconds) {
     const Deformable layer =
         make_soft_body(make_solid_box({3, 0.4, 0.1}, {30, 4, 1}), {.pose = {Rotation{}, {1.2, 0, -0.05}}});
     const Deformable block = make_soft_body(
@@ -132,15 +132,16 @@ std::vector<float> block_slid_over_block(double speed, double friction, double s
     return slid_over(layer, block, speed, seconds, {.friction = friction});
 }
 
-float distance_of(const std::vector<float>& middles) {
-    return middles.back() - middles.front();
+double distance_of(const std::vector<Vec3d>& middles) {
+    return middles.back().x - middles.front().x;
 }
 
-/// By how much it is slower in the seventeenth frame than in the seventh, when it has landed, in metres a
-/// second.
-float slowed(const std::vector<float>& middles) {
-    const auto speed = [&](std::size_t frame) { return (middles[frame] - middles[frame - 1]) * 60; };
-    return speed(7) - speed(17);
+/// The coefficient of friction by which it is slower in the seventeenth frame than in the seventh, when it
+/// has landed: what slows it over what carries it, of which rocking is a part.
+double friction_of(const std::vector<Vec3d>& middles) {
+    const auto velocity = [&](std::size_t frame) { return (middles[frame] - middles[frame - 1]) * 60; };
+    const Vec3d gained = velocity(17) - velocity(7) + Vec3d{0, 0, 9.81 * 10 / 60};
+    return -gained.x / gained.z;
 }
 
 /// Does it intersect itself where only contact with the model is looked for?
@@ -270,22 +271,22 @@ TEST(SelfCollision, OpensTheKnotOfASheetThatWasFoldedInFourTooSharply) {
 
 TEST(SelfCollision, LetsASheetWithoutFrictionSlideOverAnother) {
     for (const double speed : {0.3, 2.0, 5.0}) {
-        const auto way = static_cast<float>(0.5 * speed);
-        EXPECT_NEAR(distance_of(sheet_slid_over_sheet(speed, 0, 0.5)), way, 0.01F * way) << speed;
+        const double way = 0.5 * speed;
+        EXPECT_NEAR(distance_of(sheet_slid_over_sheet(speed, 0, 0.5)), way, 0.01 * way) << speed;
     }
 }
 
 TEST(SelfCollision, LetsASoftBodyWithoutFrictionSlideOverAnother) {
     for (const double speed : {0.3, 2.0}) {
-        const auto way = static_cast<float>(0.5 * speed);
-        EXPECT_NEAR(distance_of(block_slid_over_block(speed, 0, 0.5)), way, 0.01F * way) << speed;
+        const double way = 0.5 * speed;
+        EXPECT_NEAR(distance_of(block_slid_over_block(speed, 0, 0.5)), way, 0.01 * way) << speed;
     }
 }
 
 TEST(SelfCollision, BrakesWhatSlidesOverALayerAsFrictionSays) {
-    const float coulomb = 0.3F * 9.81F * 10 / 60;
-    EXPECT_NEAR(slowed(sheet_slid_over_sheet(1, 0.3, 0.3)), coulomb, 0.03F * coulomb);
-    EXPECT_NEAR(slowed(block_slid_over_block(1, 0.3, 0.3)), coulomb, 0.05F * coulomb);
+    EXPECT_NEAR(friction_of(sheet_slid_over_sheet(1, 0.3, 0.3)), 0.3, 0.02 * 0.3);
+    // Pairs of edges at rest have tilted normals (docs/mechanics.md, limits), which add to it.
+    EXPECT_NEAR(friction_of(block_slid_over_block(1, 0.3, 0.3)), 0.3, 0.08 * 0.3);
 }
 
 TEST(SelfCollision, LeavesTheFastFlightOfASheetAsItIs) {

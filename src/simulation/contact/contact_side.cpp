@@ -31,7 +31,7 @@ void ContactSide::to_frame(Places world, PointArrays& result) const {
 void ContactSide::place_obstacle(PointArrays places) {
     obstacle_places = std::move(places);
     extent = largest_coordinate(obstacle_places, obstacle->vertex_count());
-    pairs.forget_obstacle_boxes();
+    pairs.forget_obstacle();
 }
 
 void ContactSide::deform(PointArrays places) {
@@ -44,7 +44,7 @@ void ContactSide::deform(PointArrays places) {
         most_sq = std::max(most_sq, dot(displacement, displacement));
     }
     deformed = std::sqrt(most_sq);
-    away = {away_before.from + deformed, away_before.expected + deformed};
+    away = {away_before.from + deformed, away_before.to + deformed};
 }
 
 void ContactSide::end_deforming(bool is_done) {
@@ -55,7 +55,7 @@ void ContactSide::end_deforming(bool is_done) {
         away_before = away;
     else
         place_obstacle(std::move(obstacle_before));
-    pairs.forget_obstacle_boxes();
+    pairs.forget_obstacle();
 }
 
 float ContactSide::obstacle_closing(const Pair& pair, const Vec3f& normal) const {
@@ -82,53 +82,61 @@ Vec3f ContactSide::common_motion(const PointArrays& from, const PointArrays& to)
     return Vec3f(sum * (1 / static_cast<double>(own->vertex_count())));
 }
 
-bool ContactSide::covers(const PointArrays& in_frame, const Away& obstacle_away) const {
-    if (!is_listed()) return false;
+/// Marks the vertices that are not within covered() of a reference.
+/// @return whether there are any
+bool ContactSide::mark_others(const PointArrays& reference, const PointArrays& places) {
     const float most_sq = pairs.covered() * pairs.covered();
-    const auto is_near = [&](const PointArrays& places) {
-        const Vec3f common = common_motion(places, in_frame);
-        for (std::size_t i = 0; i < own->vertex_count(); ++i) {
-            const Vec3f away_from_it = in_frame[i] - places[i] - common;
-            if (!(dot(away_from_it, away_from_it) <= most_sq)) return false;
-        }
-        return true;
-    };
-    return (obstacle_away.from <= pairs.covered() && is_near(listed_from)) ||
-           (obstacle_away.expected <= pairs.covered() &&
-            std::any_of(expected.begin(), expected.end(), is_near));
+    bool is_any = false;
+    for (std::size_t i = 0; i < own->vertex_count(); ++i) {
+        const Vec3f off = places[i] - reference[i];
+        if (dot(off, off) <= most_sq) continue;
+        is_other_[i] = 1;
+        is_any = true;
+    }
+    return is_any;
 }
 
+/// The displacements of marked vertices are listed from now on, beside those of the others.
+/// @param starts_there  whether all begin where those do that are listed; else the others stay where those
+/// end
+void ContactSide::take_others(bool starts_there) {
+    if (!starts_there) listed_from = listed_to;
+    listed_from.resize(is_other_.size());
+    listed_to.resize(is_other_.size());
+    for (std::size_t i = 0; i < is_other_.size(); ++i) {
+        if (is_other_[i] == 0) continue;
+        if (!starts_there) listed_from.set(i, safe[i]);
+        listed_to.set(i, goal[i]);
+    }
+}
+
+/// Displacements begin and end near those for which pairs are listed, or both near where those end: so it is
+/// after a step. Pairs are looked for only of the vertices that do neither.
 bool ContactSide::list(Places ends, const Workers& workers) {
     to_frame(ends, goal);
-    if (is_listed() && listed_from == safe && away_before.from == 0 && away.expected == 0)
-        return add_to_list(workers);
-    if (covers(safe, away_before) && covers(goal, away)) return false;
-    listed_from = safe;
+    bool starts_there = false;
+    is_other_.assign(own->vertex_count(), is_listed() ? 0 : 1);
+    if (is_listed()) {
+        starts_there = !mark_others(listed_from, safe);
+        if (!starts_there) {
+            std::fill(is_other_.begin(), is_other_.end(), std::uint8_t{0});
+            mark_others(listed_to, safe);
+        }
+        mark_others(listed_to, goal);
+        const float obstacle_off = std::max(starts_there ? away_before.from : away_before.to, away.to);
+        const bool is_any = std::find(is_other_.begin(), is_other_.end(), 1) != is_other_.end();
+        if (!is_any && obstacle_off <= pairs.covered()) return false;
+        if (obstacle_off > 0) std::fill(is_other_.begin(), is_other_.end(), std::uint8_t{1});
+    }
+    starts_there = starts_there && std::find(is_other_.begin(), is_other_.end(), 0) != is_other_.end();
+    take_others(starts_there);
     is_elsewhere = true;
-    expected.assign(1, goal);
     away_before = {0, deformed};
     away = {deformed, 0};
-    pairs.list({safe, goal, obstacle_at_start(), pairs.is_of_itself() ? goal : obstacle_places}, workers);
-    return true;
-}
-
-/// Displacements from where pairs are listed add to the list, so that a search for ends that it covers ends.
-bool ContactSide::add_to_list(const Workers& workers) {
-    if (covers(goal, away)) return false;
-    PointArrays ends = expected.back();
-    const Vec3f common = common_motion(ends, goal);
-    std::vector<std::uint8_t> is_other(own->vertex_count());
-    for (std::size_t i = 0; i < is_other.size(); ++i) {
-        const Vec3f end = goal[i] - common, off = end - ends[i];
-        if (dot(off, off) <= pairs.covered() * pairs.covered()) continue;
-        is_other[i] = 1;
-        ends.set(i, end);
-    }
-    is_elsewhere = true;
-    expected.push_back(std::move(ends));
-    const PointArrays& to = expected.back();
-    pairs.add_to_list({safe, to, obstacle_at_start(), pairs.is_of_itself() ? to : obstacle_places}, is_other,
-                      workers);
+    const bool is_of_itself = pairs.is_of_itself();
+    pairs.list({listed_from, listed_to, is_of_itself ? listed_from : obstacle_from(),
+                is_of_itself ? listed_to : obstacle_places},
+               is_other_, starts_there, workers);
     return true;
 }
 

@@ -50,7 +50,7 @@ struct ContactSide {
     /// By which the obstacle has deformed in this step, at a point of a pair.
     Vec3d obstacle_displacement(const Pair& pair, const std::array<double, 4>& shares) const;
 
-    bool is_listed() const { return !expected.empty(); }
+    bool is_listed() const { return !listed_to.x.empty(); }
     /// Lists the pairs of displacements from `safe` to here, unless they are. @return whether they were not
     bool list(Places ends, const Workers& workers);
     /// Where the surface is safe now. @param world  the same in the world
@@ -83,13 +83,11 @@ struct ContactSide {
     PairSet pairs;
     std::optional<FrameChange> frame; ///< of a model that does not stand in the world's
     float thickness = 0, ready = 0, friction = 0, least_gap = 0;
-    float extent = 0; ///< of the obstacle's coordinates
-    /// Where displacements begin and end for which the pairs are listed: to any of these ends.
-    PointArrays listed_from;
-    std::vector<PointArrays> expected;
+    float extent = 0;                   ///< of the obstacle's coordinates
+    PointArrays listed_from, listed_to; ///< where displacements begin and end for which pairs are listed
     /// How far the vertices of the obstacle may be from where they were at those two.
     struct Away {
-        float from = 0, expected = 0;
+        float from = 0, to = 0;
     };
     Away away_before, away;            ///< at the beginning and the end of the displacement that is looked at
     PointArrays start;                 ///< where this step began, beside a model that moves; as its frame was
@@ -101,12 +99,12 @@ struct ContactSide {
     std::vector<float> strayed, ahead; ///< scratch of measure()
 
   private:
-    bool add_to_list(const Workers& workers);
     const PointArrays& obstacle_at_start() const { return pairs.is_of_itself() ? safe : obstacle_from(); }
     Vec3f common_motion(const PointArrays& from, const PointArrays& to) const;
-    /// Are these places so near to those where displacements begin, or to those where they end, that their
-    /// pairs are listed? @param obstacle  how far the obstacle is from where it was
-    bool covers(const PointArrays& in_frame, const Away& obstacle) const;
+    bool mark_others(const PointArrays& reference, const PointArrays& places);
+    void take_others(bool starts_there);
+
+    std::vector<std::uint8_t> is_other_; ///< scratch of list()
 };
 
 } // namespace echinus

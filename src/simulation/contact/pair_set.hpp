@@ -5,6 +5,7 @@
 #include "simulation/state/state_archive.hpp"
 #include "simulation/surfaces/elements.hpp"
 #include "simulation/surfaces/near_elements.hpp"
+#include "simulation/surfaces/near_pairs.hpp"
 #include "simulation/surfaces/separation.hpp"
 
 #include <array>
@@ -41,16 +42,16 @@ class PairSet {
     struct Displacements {
         const PointArrays &own_from, &own_to, &obstacle_from, &obstacle_to;
     };
-    /// Lists the pairs that come near on the displacements, instead of those before, and measures all where
-    /// the displacements begin.
-    void list(const Displacements& displacements, const Workers& workers);
-    /// Adds the pairs of vertices whose displacements have become others.
-    /// @param is_other  [vertex] 1 for those
-    void add_to_list(const Displacements& displacements, std::span<const std::uint8_t> is_other,
-                     const Workers& workers);
+    /// Lists the pairs that come near on the displacements, and measures them where the displacements begin.
+    /// @param is_other  [vertex] 1 for those whose displacements have become others: their pairs are looked
+    /// for, and those of other vertices stay listed
+    /// @param starts_there  whether the displacements begin where those did that are listed: then all pairs
+    /// stay listed, so that a search for ends that the list covers comes to an end
+    void list(const Displacements& displacements, std::span<const std::uint8_t> is_other, bool starts_there,
+              const Workers& workers);
 
     /// The obstacle is elsewhere than when pairs were listed.
-    void forget_obstacle_boxes() { obstacle_boxes_.faces.clear(); }
+    void forget_obstacle() { obstacle_stands_ = false; }
     /// The course of the surface's vertices: where their pairs were listed, where they are now, and where two
     /// displacements lead from there.
     struct Course {
@@ -74,30 +75,17 @@ class PairSet {
     /// Of a pair, the points that are the deformable's: all four of itself.
     std::size_t moving_count(const Pair& pair) const { return is_of_itself() ? 4 : own_count(pair.kind); }
 
-    /// The boxes around something where its displacement begins, and where it ends.
-    struct SweptBox {
-        std::array<float, 3> low_from, high_from, low_to, high_to;
-    };
-
   private:
-    struct Boxes {
-        std::vector<SweptBox> vertices, edges, faces; ///< [vertex], [edge], [element]
-    };
-
-    void find_boxes(const Elements& elements, const PointArrays& from, const PointArrays& to,
-                    const Workers& workers, Boxes& boxes) const;
-    void find_near_pairs(const Workers& workers);
-    void list_measured(const Displacements& displacements, std::size_t known_count);
+    void find_pairs(const Displacements& displacements, const Workers& workers);
+    void list_measured(const Displacements& displacements, std::size_t kept_count);
     float closing_of(const Pair& pair, const Vec3f& normal, const Displacements& displacements) const;
-    void add_pairs(const std::array<std::uint32_t, 2>& elements, std::vector<Pair>& pairs) const;
     float nearer_by(const Pair& pair, const Course& course) const;
     void measure_new(const PointArrays& own, const PointArrays& obstacle, const Workers& workers);
-    const Boxes& obstacle_boxes() const { return is_of_itself() ? own_boxes_ : obstacle_boxes_; }
 
     std::shared_ptr<const Elements> own_, obstacle_;
     float reach_ = 0;
-    MovingTree own_tree_, obstacle_tree_; ///< the second unused of itself
-    Boxes own_boxes_, obstacle_boxes_;
+    MovingTree own_tree_, obstacle_tree_;                                  ///< the second unused of itself
+    bool obstacle_stands_ = false;                                         ///< is its tree up to date?
     std::vector<std::vector<std::array<std::uint32_t, 2>>> near_elements_; ///< by worker
     PiecewiseList<Pair> found_;
     std::vector<Pair> listed_;

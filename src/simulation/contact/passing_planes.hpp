@@ -20,15 +20,20 @@ struct PassingParts {
 
     /// Normals of planes that may separate them: along the displacement and an edge, or that of the face or
     /// of both edges (the axes that separate swept polyhedra, Gottschalk et al. 1996), and the given one
-    /// turned to be along the displacement. Of unit length, towards the first part; zero where there is none.
-    std::array<Vec3<T>, 5> normals() const {
+    /// turned to be along the displacement, or along one of two edges, which may be parallel. Of unit length,
+    /// towards the first part; zero where there is none.
+    std::array<Vec3<T>, 6> normals() const {
         const auto edge = [&](std::size_t a, std::size_t b) { return points[b] - points[a]; };
-        const Vec3<T> along = normal - ahead * (dot(ahead, normal) / dot(ahead, ahead));
-        std::array<Vec3<T>, 5> result{along};
+        const auto turned_along = [&](const Vec3<T>& direction) {
+            return normal - direction * (dot(direction, normal) / dot(direction, direction));
+        };
+        std::array<Vec3<T>, 6> result{turned_along(ahead)};
         if (kind == PairKind::EdgeEdge) {
             result[1] = cross(edge(0, 1), edge(2, 3));
             result[2] = cross(edge(0, 1), ahead);
             result[3] = cross(edge(2, 3), ahead);
+            result[4] = turned_along(edge(0, 1));
+            result[5] = turned_along(edge(2, 3));
         } else {
             const std::size_t a = kind == PairKind::VertexFace ? 1 : 0, b = a + 1, c = a + 2;
             result[1] = cross(edge(a, b), edge(a, c));

@@ -435,10 +435,10 @@ void SurfaceContacts::archive(StateArchive& state) {
             state.points(places);
         };
         archive_places(side.listed_from);
-        state.items(side.expected, archive_places);
+        archive_places(side.listed_to);
         state.value(side.away.from);
-        state.value(side.away.expected);
-        state.require(side.away.from >= 0 && side.away.expected >= 0);
+        state.value(side.away.to);
+        state.require(side.away.from >= 0 && side.away.to >= 0);
         side.away_before = side.away;
         side.pairs.archive(state);
     }

@@ -57,10 +57,6 @@ HWY_BEFORE_NAMESPACE();
 namespace echinus {
 namespace HWY_NAMESPACE {
 
-/// @pre there are at most 2^31 points
-HWY_INLINE IntLanes load_indices(const std::uint32_t* from) {
-    return hn::BitCast(kInt, hn::LoadU(hn::RebindToUnsigned<Ints>(), from));
-}
 HWY_INLINE PointLanes gather(const PointArrays& points, IntLanes at) {
     return {hn::GatherIndex(kFloat, points.x.data(), at), hn::GatherIndex(kFloat, points.y.data(), at),
             hn::GatherIndex(kFloat, points.z.data(), at)};

@@ -1,0 +1,29 @@
+#pragma once
+
+#include "simulation/particles.hpp"
+#include "simulation/surfaces/elements.hpp"
+#include "simulation/surfaces/separation.hpp"
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace echinus {
+
+/// Elements whose vertices move along straight displacements, all together.
+struct MovingElements {
+    const Elements& elements;
+    const PointArrays &from, &to;
+};
+
+/// Appends the pairs of a vertex and a face or of two edges in these pairs of elements that may come as near
+/// as `reach` on their displacements; each vertex and each edge with the element that owns it. Those do not
+/// whose boxes are farther apart along an axis both at the start and, on the same side, at the end. Of one
+/// surface, those that share a vertex are left out. The same pairs, in the same order, under every
+/// instruction set.
+/// @param elements  the numbers of one of `own` and one of `other`
+void find_near_pairs(std::span<const std::array<std::uint32_t, 2>> elements, const MovingElements& own,
+                     const MovingElements& other, float reach, std::vector<Pair>& pairs);
+
+} // namespace echinus
