@@ -211,8 +211,8 @@ struct SimulationOptions {
     /// Newton: at most so many steps of Newton's method in each frame, or part of one; fewer where it has
     /// converged. Fewer than two leave contacts unresolved.
     std::uint32_t newton_step_count = 8;
-    /// Newton: a step of Newton's method that moves no particle farther than this has converged; share of the
-    /// mean edge length.
+    /// Newton: a step of Newton's method has converged if the energy that it gains could move particles no
+    /// farther than this in the root mean square; share of the mean edge length.
     double newton_tolerance = 1e-4;
     /// Newton: resistance of still air, 1/s: the rate at which a velocity decays that nothing keeps up,
     /// whatever the time step. 0 is a vacuum.

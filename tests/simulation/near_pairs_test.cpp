@@ -150,13 +150,13 @@ TEST(NearPairs, OfVerticesWhoseDisplacementsChangeAreThoseOfAListThatIsMadeAnew)
     const auto own = grid(), other = grid();
     Random random(7);
     for (const bool starts_there : {true, false}) {
-        const PointArrays from = places_at(0.12F, 0.05F, random), to = places_at(0.02F, 0.05F, random),
+        const PointArrays from = places_at(0.3F, 0.05F, random), to = places_at(0.5F, 0.05F, random),
                           at = places_at(0, 0.05F, random);
         PairSet set(own, from, other, at);
         set.set_reach(kReach);
         set.list({from, to, at, at}, std::vector<std::uint8_t>(kCount, 1), false, Workers(1));
-        // Some go elsewhere. The others go where they were going, or stay where they have got.
-        const PointArrays elsewhere = places_at(-0.05F, 0.05F, random);
+        // Some come near. The others go where they were going, or stay where they have got.
+        const PointArrays elsewhere = places_at(0.02F, 0.05F, random);
         PointArrays start = starts_there ? from : to, end = to;
         std::vector<std::uint8_t> is_other(kCount);
         for (std::size_t i = 0; i < kCount; i += 5) {

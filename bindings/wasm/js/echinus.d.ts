@@ -649,8 +649,8 @@ export interface SceneDescription {
     /** Threads that compute a frame; 0: all cores. The same bits with any number (0 to 1024). Default: 1. */
     thread_count?: number;
     /**
-     * `newton` only: a step of Newton's method that moves no particle farther than this has converged; share of the
-     * mean edge length (0 to 1). Default: 0.0001.
+     * `newton` only: a step of Newton's method has converged if the energy that it gains could move particles no
+     * farther than this in the root mean square; share of the mean edge length (0 to 1). Default: 0.0001.
      */
     newton_tolerance?: number;
     /** Velocity of the air; needs `wind_rate` (-1e9 to 1e9 length/s). Default: `[0, 0, 0]`. */

@@ -1164,8 +1164,8 @@ typedef struct echinus_simulation_options {
     double bending_stiffness;
     /// Viscosity of the cloth over its stiffness (0 to 1e6 s)
     double damping;
-    /// Newton only: a step of Newton's method that moves no particle farther than this has converged; share
-    /// of the mean edge length (0 to 1)
+    /// Newton only: a step of Newton's method has converged if the energy that it gains could move particles
+    /// no farther than this in the root mean square; share of the mean edge length (0 to 1)
     double newton_tolerance;
     /// Newton only: resistance of still air, the rate at which a velocity decays that nothing keeps up; 0 is
     /// a vacuum (0 to 1e6 1/s)
