@@ -79,7 +79,7 @@ Solver::Solver(Deformable deformable_in, std::vector<Collider> colliders_in,
       options(with_thickness(options_in, deformable)), largest_speed(std::numeric_limits<double>::infinity()),
       workers_(options.thread_count), attachments_(deformable, colliders), handles_(deformable),
       deforming_(colliders.size()), rest_(options.rest, deformable.positions), bounds_(options, deformable),
-      start_hash_(hash_of(deformable.positions)) {
+      loads_(colliders.size()), start_hash_(hash_of(deformable.positions)) {
     for (const Collider& collider : colliders) start_poses_.push_back(collider.pose);
     if (options.surface_collision) require_apart(deformable, colliders, options);
 }
@@ -119,9 +119,8 @@ void Solver::prepare_next_frame() {
 void Solver::move_colliders_on() {
     handles_.begin_frame(frame * options.time_step,
                          [&](std::uint32_t particle) { set_held(particle, false); });
-    std::vector<Load> loads;
-    for (std::size_t c = 0; c < colliders.size(); ++c) loads.push_back(load_on(c));
-    motions.begin_frame(colliders, (frame + 1.0) * options.time_step, options.time_step, loads,
+    for (std::size_t c = 0; c < colliders.size(); ++c) loads_[c] = load_on(c);
+    motions.begin_frame(colliders, (frame + 1.0) * options.time_step, options.time_step, loads_,
                         options.gravity);
     for (std::size_t i = 0; i < colliders.size(); ++i)
         if (!Bounds::contain_way(colliders[i], options.time_step))

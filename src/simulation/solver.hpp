@@ -94,6 +94,7 @@ class Solver {
     bool all_arrived() const;
     void carry_out(const Teleport& teleport);
 
+    std::vector<Load> loads_;                 ///< by collider, of the frame before
     std::vector<Teleport> teleports_;         ///< to come
     std::uint64_t start_hash_;                ///< of where particles began
     std::vector<RigidTransform> start_poses_; ///< of the colliders
