@@ -563,6 +563,14 @@ export interface SceneDescription {
         ignores?: readonly number[];
     };
     bodies?: readonly Body[];
+    /** Cuts: in the frame of that time these colliders and, unless told otherwise, what deforms are elsewhere. */
+    teleports?: readonly {
+        time: number;
+        displacement?: Vec3;
+        rotation?: { axis: Vec3; degrees: number };
+        colliders?: readonly number[];
+        deformable?: boolean;
+    }[];
     material?: {
         /** Without a cloth, in place of its own. */
         thickness?: number;
@@ -681,6 +689,23 @@ export interface Placement {
     scale?: number | Vec3;
     linear_velocity?: Vec3;
     angular_velocity?: Vec3;
+    /** kg: it moves freely from its velocities. */
+    mass?: number;
+    /** In place of position, rotation, velocities and mass. */
+    keyframes?: readonly Keyframe[];
+}
+
+/** Where something is at a time in seconds. */
+export interface Keyframe {
+    time: number;
+    position?: Vec3;
+    rotation?: { axis: Vec3; degrees: number };
+}
+
+/** A path, without which it stands still, and when it lets go, seconds. */
+export interface Handle {
+    keyframes?: readonly Keyframe[];
+    release?: number;
 }
 
 /** A soft body; lengths of `element` before the scale. */
@@ -706,6 +731,7 @@ export interface Body {
     angular_velocity?: Vec3;
     pins?: VertexChoice;
     attachments?: VertexChoice | readonly Attachments[];
+    handles?: readonly (Handle & { vertices: VertexChoice })[];
     /** Colliders, by their numbers, that it passes through. */
     ignores?: readonly number[];
 }
@@ -722,6 +748,7 @@ export interface Sheet {
     pins?: readonly (readonly [number, number])[];
     /** Of particles that move with a collider, the first unless it is named. */
     attachments?: readonly (readonly [number, number])[] | readonly { collider: number; particles: readonly (readonly [number, number])[] }[];
+    handles?: readonly (Handle & { particles: readonly (readonly [number, number])[] })[];
 }
 
 /** Vertices that move with a collider. */
@@ -743,6 +770,7 @@ export interface MeshCloth {
     // End of options.
     pins?: VertexChoice;
     attachments?: VertexChoice | readonly Attachments[];
+    handles?: readonly (Handle & { vertices: VertexChoice })[];
 }
 
 /** A validated scene. */
