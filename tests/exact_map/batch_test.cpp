@@ -72,10 +72,10 @@ std::vector<Vec3f> telling_points(const ExactMapView& map, const TriangleMesh& m
     constexpr float kInfinity = std::numeric_limits<float>::infinity();
     constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
     test::Random random(1);
-    std::vector<Vec3f> points = test::surface_points(mesh, 3000);
-    for (const Vec3f& p : test::surface_points(mesh, 1000, 0)) points.push_back(p);
+    std::vector<Vec3f> points = test::surface_points(mesh, 1000);
+    for (const Vec3f& p : test::surface_points(mesh, 500, 0)) points.push_back(p);
     for (const Vec3f& p : test::surface_points(mesh, 500, 1e-6)) points.push_back(p);
-    for (int n = 0; n < 3000; ++n) points.push_back(map.centre + test::in_cube(random, 1.3F * map.radius));
+    for (int n = 0; n < 1000; ++n) points.push_back(map.centre + test::in_cube(random, 1.3F * map.radius));
     for (int n = 0; n < 300; ++n) points.push_back(map.centre + test::in_cube(random, 1e-5F * map.radius));
     for (int n = 0; n < 300; ++n) points.push_back(map.centre + test::in_cube(random, 5 * map.radius));
     for (float far = 4; far < 1e15F; far *= 8)
@@ -270,7 +270,7 @@ TEST(ExactMapBatch, TakesAnyNumberOfPointsAtAnyStride) {
 TEST(ExactMapBatch, GivesTheSameAnswersOnAnyNumberOfThreads) {
     const TriangleMesh mesh = make_torus(1, 0.4, 40, 16);
     const ExactMap map = ExactMap::build(mesh);
-    const std::vector<Vec3f> points = test::surface_points(mesh, 100'000);
+    const std::vector<Vec3f> points = test::surface_points(mesh, 30'000);
     const SignedDistances expected = signed_distances_by_reference(map, points);
     for (unsigned thread_count : {0U, 2U, 3U}) {
         expect_same_sides(map, points, thread_count);

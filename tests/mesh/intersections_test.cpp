@@ -318,7 +318,7 @@ TEST(SelfIntersectingPairs, OfProperSurfacesAreNone) {
 TEST(SelfIntersectingPairs, AreThePartsWithoutCommonVertexThatMeetByElimination) {
     Random random(5);
     std::size_t found = 0, all = 0;
-    for (int i = 0; i < 60; ++i) {
+    for (int i = 0; i < 24; ++i) {
         const TriangleMesh mesh = random_soup(random, 9, 14, i % 3 + 1);
         const Pairs expected = own_pairs_one_by_one(mesh);
         ASSERT_EQ(self_intersecting_pairs(mesh), expected);

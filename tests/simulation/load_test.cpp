@@ -86,7 +86,7 @@ void expect_balance(Simulation& simulation, int frame_count, double most_left) {
 } // namespace
 
 TEST(Load, OfAClothAtRestIsItsWeight) {
-    Simulation simulation(sheet_at(0.55, 1.2, 19), colliders_of({make_sphere(0.5, 30, 15)}), kMeasured);
+    Simulation simulation(sheet_at(0.55, 1.2, 13), colliders_of({make_sphere(0.5, 30, 15)}), kMeasured);
     const double weight = weight_of(masses_of(simulation));
     for (int i = 0; i < 300 && !simulation.at_rest(); ++i) simulation.step();
     const Load load = mean_load(simulation, 0);

@@ -315,7 +315,7 @@ TEST(Newton, ParticlesFallOnEveryKindOfMapAndStayOutside) {
     for (const ColliderMap& map :
          {ColliderMap(DistanceMap::build(torus)), ColliderMap(ExactMap::build(torus)),
           ColliderMap(std::make_shared<AnalyticBall>(0.3F, Vec3f{0, 0, -0.18F}))}) {
-        Simulation simulation(sheet_at(0.15, 0.8, 25, {0.003, 0, 0}), {{.map = map}}, options);
+        Simulation simulation(sheet_at(0.15, 0.8, 17, {0.003, 0, 0}), {{.map = map}}, options);
         for (int i = 0; i < 120; ++i) {
             simulation.step();
             ASSERT_EQ(inside_count(simulation), 0u) << i;

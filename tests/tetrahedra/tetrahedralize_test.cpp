@@ -180,7 +180,9 @@ TEST(Tetrahedralize, RefusesWhatItCannotDo) {
     expect_error(ErrorCode::InvalidMesh, "choose a smaller size", [] {
         tetrahedralize_mesh(make_box({2, 2, 0.001}), {.size = 0.33});
     });
-    // Sizes at which such a plate has elements at all make millions of them.
+}
+
+TEST(Tetrahedralize, RefusesACountForAPlateThatHasElementsOnlyByTheMillions) {
     expect_error(ErrorCode::InvalidMesh, "at which about 500 tetrahedra fit into the model", [] {
         tetrahedralize_mesh(make_box({2, 2, 0.001}), {.count = 500});
     });
