@@ -425,8 +425,8 @@ class Simulation {
 
     /// Newton: sets colliders, the deformable or both elsewhere, at once where its time has come, else in the
     /// frame of its time. Velocities stay as they are, but for their directions; a collider that goes without
-    /// the deformable takes nothing along, pushes nothing on the way, and stands where it is then. What goes
-    /// together stays to each other as it was, to rounding of positions.
+    /// the deformable takes nothing along, pushes nothing on the way, and stands where it is then. Things
+    /// that go together stay to each other as they were, to rounding of positions.
     /// @throws Error InvalidOptions when the motion is not finite or its rotation off the unit length by more
     /// than 1e-4, a collider does not exist, the solver is Jakobsen, only one of a collider and what is
     /// attached to it goes, or, with options().surface_collision, the deformable would meet a collider there;

@@ -48,7 +48,7 @@ void Solver::carry_out(const Teleport& teleport) {
                        "a teleport has to take particle " + std::to_string(attachment.particle) + " and " +
                            name_of_collider(attachment.collider) +
                            ", to which it is attached, along together");
-    // What goes together stays as it was to each other.
+    // Things that go together stay to each other as they were.
     std::vector<Vec3f> places = deformable.positions;
     if (teleport.deformable)
         for (Vec3f& place : places) place = Vec3f(motion.to_world(Vec3d(place)));
