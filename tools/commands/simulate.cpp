@@ -18,6 +18,7 @@
 #include <cmath>
 #include <memory>
 #include <optional>
+#include <set>
 #include <span>
 #include <string>
 #include <utility>
@@ -299,6 +300,7 @@ void choose_particles(std::uint32_t particle_count, Scene& scene) {
     };
     sheet.column_count = scaled(sheet.column_count);
     sheet.row_count = scaled(sheet.row_count);
+    std::set<std::uint32_t> held;
     const auto renumber = [&](std::vector<std::uint32_t>& particles) {
         for (std::uint32_t& particle : particles) {
             const auto nearest = [](std::uint32_t place, std::uint32_t from, std::uint32_t to) {
@@ -308,12 +310,14 @@ void choose_particles(std::uint32_t particle_count, Scene& scene) {
                            sheet.column_count +
                        nearest(particle % before.column_count, before.column_count, sheet.column_count);
         }
-        std::sort(particles.begin(), particles.end());
-        particles.erase(std::unique(particles.begin(), particles.end()), particles.end());
+        // Particles that have come to one place are held once.
+        std::erase_if(particles, [&](std::uint32_t particle) { return !held.insert(particle).second; });
     };
     renumber(sheet.pins);
     for (SceneAttachment& attachment : scene.cloth_attachments)
         renumber(std::get<std::vector<std::uint32_t>>(attachment.vertices));
+    for (SceneHandle& handle : scene.cloth_handles)
+        renumber(std::get<std::vector<std::uint32_t>>(handle.vertices));
 }
 
 std::vector<ColliderResult> results_of(const LoadedColliders& colliders, Course& course) {
