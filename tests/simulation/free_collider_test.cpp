@@ -16,7 +16,7 @@ using namespace echinus::test;
 
 namespace {
 
-SimulationOptions surfaces() {
+SimulationOptions beside_free_models() {
     SimulationOptions options;
     options.surface_collision = true;
     options.thickness = 0.01;
@@ -24,7 +24,7 @@ SimulationOptions surfaces() {
 }
 
 SimulationOptions without_forces() {
-    SimulationOptions options = surfaces();
+    SimulationOptions options = beside_free_models();
     options.gravity = {};
     options.air_drag = 0;
     return options;
@@ -50,7 +50,7 @@ std::string refusal(const ColliderMap& map, double mass, SimulationOptions optio
 
 TEST(FreeCollider, FallsAndFliesAsABodyDoes) {
     Collider ball{.map = ExactMap::build(make_sphere(0.1, 20, 10)), .linear_velocity = {2, 0, 3}};
-    Simulation simulation(sheet_at(-50, 1, 3), {ball}, surfaces());
+    Simulation simulation(sheet_at(-50, 1, 3), {ball}, beside_free_models());
     simulation.set_collider_free(0, 0.5);
     for (int i = 0; i < 60; ++i) simulation.step();
     const Vec3d place = simulation.colliders()[0].pose.translation;
@@ -124,7 +124,7 @@ TEST(FreeCollider, ComesToRestInAClothThatBearsIt) {
         for (const std::uint32_t pin : {i, 19 * 20 + i, 20 * i, 20 * i + 19})
             trampoline.inverse_masses[pin] = 0;
     const TriangleMesh ball = make_sphere(0.3, 40, 20);
-    SimulationOptions options = surfaces();
+    SimulationOptions options = beside_free_models();
     options.air_drag = 2;
     Simulation simulation(trampoline, {{.map = ExactMap::build(ball), .pose = {{}, {0, 0, 0.5}}}}, options);
     simulation.set_collider_free(0, 0.3);
@@ -146,6 +146,7 @@ TEST(FreeCollider, NamesWhyItCannotBeFree) {
     EXPECT_NE(refusal(DistanceMap::build(make_sphere(1, 20, 10)), 1).find("no exact map"), std::string::npos);
     TriangleMesh open = make_box({1, 1, 1});
     open.faces.pop_back();
-    EXPECT_NE(refusal(ExactMap::build(open), 1, surfaces()).find("has to be closed"), std::string::npos);
+    EXPECT_NE(refusal(ExactMap::build(open), 1, beside_free_models()).find("has to be closed"),
+              std::string::npos);
     EXPECT_NE(refusal(box, 1, jakobsen()).find("newton"), std::string::npos);
 }

@@ -20,12 +20,12 @@ using namespace echinus::test;
 
 namespace {
 
-constexpr std::uint32_t kSide = 13;
+constexpr std::uint32_t kHeldCount = 13;
 
 /// A level sheet whose row at one end a handle holds.
 Deformable held_sheet(Handle handle) {
-    Deformable sheet = sheet_at(1, 0.6, kSide);
-    for (std::uint32_t i = 0; i < kSide; ++i) handle.particles.push_back(i);
+    Deformable sheet = sheet_at(1, 0.6, kHeldCount);
+    for (std::uint32_t i = 0; i < kHeldCount; ++i) handle.particles.push_back(i);
     sheet.handles = {std::move(handle)};
     return sheet;
 }
@@ -56,14 +56,14 @@ TEST(Handles, LeadWhatTheyHoldRigidlyAlongTheirPath) {
     for (const double seconds : {0.1, 0.3, 0.6, 1.0}) {
         run(simulation, seconds);
         const RigidTransform pose = pose_at(keys, simulation.frame() * simulation.options().time_step);
-        for (std::uint32_t i = 0; i < kSide; ++i) {
+        for (std::uint32_t i = 0; i < kHeldCount; ++i) {
             const Vec3d local = keys[0].pose.to_local(Vec3d(sheet.positions[i]));
             EXPECT_LT(length(Vec3d(simulation.positions()[i]) - pose.to_world(local)), 1e-6) << seconds;
         }
     }
     // The rest of the sheet hangs from there, in the end.
     run(simulation, 4);
-    const Vec3f end = simulation.positions()[kSide * kSide - 1];
+    const Vec3f end = simulation.positions()[kHeldCount * kHeldCount - 1];
     EXPECT_LT(end.z, simulation.positions()[0].z - 0.3F);
 }
 
@@ -89,9 +89,9 @@ TEST(Handles, LetGoAtTheirTimeOfWhatGoesOnWithItsVelocity) {
 TEST(Handles, DropASheetThatHungFromThem) {
     Simulation simulation(held_sheet({.particles = {}, .release_time = 0.5}), {}, {});
     run(simulation, 0.5);
-    for (std::uint32_t i = 0; i < kSide; ++i) EXPECT_EQ(simulation.positions()[i].z, 1);
+    for (std::uint32_t i = 0; i < kHeldCount; ++i) EXPECT_EQ(simulation.positions()[i].z, 1);
     run(simulation, 1);
-    for (std::uint32_t i = 0; i < kSide; ++i) EXPECT_LT(simulation.positions()[i].z, 0.3);
+    for (std::uint32_t i = 0; i < kHeldCount; ++i) EXPECT_LT(simulation.positions()[i].z, 0.3);
 }
 
 TEST(Handles, KeepASimulationFromRestUntilTheyHaveLetGo) {

@@ -21,7 +21,7 @@ using namespace echinus::test;
 
 namespace {
 
-Vec3d middle_of(const Simulation& simulation) {
+Vec3d mean_place(const Simulation& simulation) {
     Vec3d sum;
     for (const Vec3f& place : simulation.positions()) sum += Vec3d(place);
     return sum * (1 / static_cast<double>(simulation.positions().size()));
@@ -118,7 +118,7 @@ TEST(Pressure, InflatesABallAsFarAsItsMembraneBears) {
                 kPressure * kRadius * (1 + strain) * (1 + strain) / (2 * options.material.stretch_stiffness);
         EXPECT_NEAR(mean_radius(simulation, {}) / kRadius - 1, strain, 0.05 * strain);
         EXPECT_LT(simulation.largest_speed(), 1e-3);
-        EXPECT_LT(length(middle_of(simulation)), 1e-5); // and it stays where it is
+        EXPECT_LT(length(mean_place(simulation)), 1e-5); // and it stays where it is
     }
 }
 
@@ -137,7 +137,7 @@ TEST(Pressure, OfTheSameBallIsTheSameFarFromTheOrigin) {
         far.step();
     }
     EXPECT_NEAR(mean_radius(far, {1000, 0, 0}), mean_radius(near, {}), 1e-4);
-    EXPECT_LT(length(middle_of(far) - Vec3d{1000, 0, 0}), 1e-3);
+    EXPECT_LT(length(mean_place(far) - Vec3d{1000, 0, 0}), 1e-3);
 }
 
 TEST(Pressure, BearsAPillowThatLiesFlatWithoutIt) {

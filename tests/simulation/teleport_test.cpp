@@ -19,7 +19,7 @@ namespace {
 
 const TriangleMesh kBall = make_sphere(0.2, 30, 15);
 
-SimulationOptions surfaces() {
+SimulationOptions with_both_contacts() {
     SimulationOptions options;
     options.surface_collision = options.self_collision = true;
     options.thickness = 0.005;
@@ -31,7 +31,7 @@ Simulation sheet_on_ball() {
     Simulation simulation(sheet_at(0.21, 0.5, 15),
                           {{.map = ExactMap::build(kBall)},
                            {.map = ExactMap::build(make_box({0.1, 0.1, 0.1})), .pose = {{}, {0, 0, 3}}}},
-                          surfaces());
+                          with_both_contacts());
     for (int i = 0; i < 90; ++i) simulation.step();
     return simulation;
 }
@@ -104,7 +104,7 @@ TEST(Teleport, TakesPinsHandlesAndKeyframesAlong) {
     Deformable sheet = sheet_at(0.5, 0.4, 9);
     sheet.inverse_masses[0] = 0;
     sheet.handles = {{{8}, {{0, {}}, {2, {{}, {0, 0, 1}}}}}};
-    Simulation simulation(sheet, {{.map = ExactMap::build(kBall)}}, surfaces());
+    Simulation simulation(sheet, {{.map = ExactMap::build(kBall)}}, with_both_contacts());
     simulation.set_collider_keyframes(0, {{0, {}}, {2, {{}, {0, 0.5, 0}}}});
     for (int i = 0; i < 30; ++i) simulation.step();
     Simulation goes = simulation;
@@ -153,7 +153,7 @@ TEST(Teleport, NamesWhatIsWrong) {
     Deformable attached = sheet_at(0.5, 0.4, 9);
     attached.inverse_masses[4] = 0;
     attached.attachments = {{4, 0}};
-    Simulation held(attached, {{.map = ExactMap::build(kBall)}}, surfaces());
+    Simulation held(attached, {{.map = ExactMap::build(kBall)}}, with_both_contacts());
     EXPECT_NE(refusal(held, {.motion = {{}, {1, 0, 0}}}).find("particle 4 and collider 0"),
               std::string::npos);
     EXPECT_EQ(refusal(held, {.motion = {{}, {1, 0, 0}}, .colliders = {0}}), "");
