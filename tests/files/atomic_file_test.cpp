@@ -74,8 +74,7 @@ namespace {
 class AtomicFileTest : public testing::Test {
   protected:
     void SetUp() override {
-        const auto* test = testing::UnitTest::GetInstance()->current_test_info();
-        folder_ = fs::temp_directory_path() / (std::string("echinus_") + test->name());
+        folder_ = test::folder_of_test();
         fs::remove_all(folder_);
         fs::create_directories(folder_);
     }

@@ -2,6 +2,7 @@
 
 #include "support/cloth_meshes.hpp"
 #include "support/expectations.hpp"
+#include "support/temporary_folder.hpp"
 
 #include <echinus/error.hpp>
 #include <echinus_scene/scene.hpp>
@@ -435,7 +436,7 @@ TEST(SceneBodies, ThatAreImpossibleAreRefused) {
 namespace fs = std::filesystem;
 
 TEST(FindModel, TakesTheFirstFolderThatHasTheFile) {
-    const fs::path root = fs::temp_directory_path() / "echinus_find_model";
+    const fs::path root = test::folder_of_test();
     fs::remove_all(root);
     const std::array folders{root / "empty", root / "first", root / "second"};
     for (const fs::path& folder : folders) fs::create_directories(folder);

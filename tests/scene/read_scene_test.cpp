@@ -1,4 +1,5 @@
 #include "support/expectations.hpp"
+#include "support/temporary_folder.hpp"
 
 #include <echinus/error.hpp>
 #include <echinus_scene/scene.hpp>
@@ -529,7 +530,7 @@ TEST(Scene, RefusesAPinOutsideTheCloth) {
 }
 
 TEST(SceneFile, ThatCannotBeReadIsRefusedByName) {
-    const fs::path folder = fs::temp_directory_path() / "echinus_scene_file";
+    const fs::path folder = test::folder_of_test();
     fs::create_directories(folder);
     std::ofstream(folder / "empty.json");
     std::ofstream(folder / "huge.json") << std::string(2'000'000, ' ');

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <filesystem>
 #include <fstream>
@@ -9,13 +10,19 @@
 
 namespace echinus::test {
 
+/// For the files of the test that runs, and not made yet. Another process, which may run the same test at the
+/// time, has another.
+inline std::filesystem::path folder_of_test() {
+    const auto* test = testing::UnitTest::GetInstance()->current_test_info();
+    return std::filesystem::temp_directory_path() / (std::string("echinus_") + test->test_suite_name() + "_" +
+                                                     test->name() + "_" + std::to_string(getpid()));
+}
+
 /// A test with its own empty folder, which is removed at its end.
 class TemporaryFolderTest : public testing::Test {
   protected:
     void SetUp() override {
-        const auto* test = testing::UnitTest::GetInstance()->current_test_info();
-        folder_ = std::filesystem::temp_directory_path() /
-                  (std::string("echinus_") + test->test_suite_name() + "_" + test->name());
+        folder_ = folder_of_test();
         std::filesystem::remove_all(folder_);
         std::filesystem::create_directories(folder_);
     }

@@ -1,5 +1,7 @@
 #include "tools/command_line.hpp"
 
+#include "support/temporary_folder.hpp"
+
 #include <sys/wait.h>
 
 #include <algorithm>
@@ -34,9 +36,7 @@ std::size_t ProgramResult::error_line_count() const {
 }
 
 void CommandLineTest::SetUp() {
-    const auto* test = testing::UnitTest::GetInstance()->current_test_info();
-    const fs::path base =
-        fs::temp_directory_path() / (std::string("echinus_") + test->test_suite_name() + "_" + test->name());
+    const fs::path base = echinus::test::folder_of_test();
     fs::remove_all(base);
     folder_ = base / "work";
     stream_folder_ = base / "streams";
