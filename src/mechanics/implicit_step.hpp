@@ -84,6 +84,8 @@ class ImplicitStep {
     /// The elastic part alone, without dissipation in progress.
     const ElasticModel& elastic() const { return elastic_; }
     std::span<const double> masses() const { return masses_; }
+    /// [particle] the first one of its body: of those that the material connects.
+    std::span<const std::uint32_t> bodies() const { return bodies_; }
     std::size_t level_count() const { return multigrid_.level_count(); }
 
   private:

@@ -64,7 +64,8 @@ NewtonSolver::NewtonSolver(Deformable deformable_in, std::vector<Collider> colli
         if (!passes.empty() && all_pass) meets_some_[c] = 0;
     }
     if (options.surface_collision || !colliders.empty())
-        contacts_.emplace(deformable, colliders, step_.masses(), contact_options(options, mean_edge_));
+        contacts_.emplace(deformable, colliders, step_.masses(), step_.bodies(),
+                          contact_options(options, mean_edge_));
 }
 
 void NewtonSolver::step() {

@@ -8,6 +8,7 @@
 #include "support/surface_judge.hpp"
 
 #include <echinus/simulation.hpp>
+#include <echinus/soft_body.hpp>
 
 #include <gtest/gtest.h>
 
@@ -375,4 +376,31 @@ TEST(SurfaceCollision, OfParticlesOnlyKeepsPositionsFiniteOnASoup) {
                           jakobsen({.thickness = kSurfaceThickness, .allow_open_colliders = true}));
     for (int frame = 0; frame < 60; ++frame) simulation.step();
     for (const Vec3f& p : simulation.positions()) ASSERT_TRUE(is_finite(p));
+}
+
+TEST(SurfaceCollision, LetsAPieceFallFreelyThatTouchesNothingWhileAnotherIsSqueezed) {
+    // Two plates leave a twentieth of the thickness to a sheet that is crumpled between them.
+    const auto squeezed = [](bool with_squeezed) {
+        std::vector<Collider> plates = colliders_of({make_box({1, 1, 0.1}, 3), make_box({1, 1, 0.1}, 3)});
+        plates[0].pose.translation.z = -0.15;
+        plates[1].pose.translation.z = 0.15;
+        plates[1].linear_velocity = {0, 0, -0.2};
+        Deformable falling = sheet_at(5, 0.4, 8);
+        for (Vec3f& p : falling.positions) p.x += 4;
+        falling.previous_positions = falling.positions;
+        std::vector<Deformable> pieces;
+        if (with_squeezed) pieces.push_back(sheet_at(0, 0.5, 10, {0, 0, 0.01}));
+        pieces.push_back(falling);
+        return Simulation(combine(pieces), plates,
+                          {.thickness = 0.01, .surface_collision = true, .self_collision = true});
+    };
+    Simulation alone = squeezed(false), beside = squeezed(true);
+    const std::size_t first = beside.positions().size() - alone.positions().size();
+    for (int i = 0; i < 90; ++i) {
+        alone.step();
+        beside.step();
+    }
+    EXPECT_GT(beside.profile().truncated_count, 0u);
+    for (std::size_t i = 0; i < alone.positions().size(); ++i)
+        EXPECT_LT(length(beside.positions()[first + i] - alone.positions()[i]), 0.01F) << i;
 }

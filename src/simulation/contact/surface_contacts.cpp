@@ -70,10 +70,12 @@ Vec3d normal_of(const PassingParts<double>& parts, double distance) {
 } // namespace
 
 SurfaceContacts::SurfaceContacts(const Deformable& deformable, const std::vector<Collider>& colliders,
-                                 std::span<const double> masses, const SimulationOptions& options)
+                                 std::span<const double> masses, std::span<const std::uint32_t> bodies,
+                                 const SimulationOptions& options)
     : own_(std::make_shared<Elements>(elements_of(deformable))), masses_(masses.begin(), masses.end()),
-      collider_count_(colliders.size()), particles_(deformable, colliders, without_faces(colliders, options),
-                                                    *options.thickness, options.friction),
+      bodies_(bodies.begin(), bodies.end()), collider_count_(colliders.size()),
+      particles_(deformable, colliders, without_faces(colliders, options), *options.thickness,
+                 options.friction),
       contacts_(own_->vertex_count(), colliders.size() + (options.self_collision ? 1 : 0), colliders.size(),
                 length(options.gravity)) {
     const float edge_length = mean_edge_length(*own_, deformable.positions);
@@ -244,53 +246,74 @@ bool SurfaceContacts::find_ends(std::span<Vec3d> places, std::span<const double>
     return false;
 }
 
-/// The displacement from the safe state that all have in common, which nothing within the deformable takes
-/// from it; 0 where any are held.
-Vec3d SurfaceContacts::common_displacement(Places goals) const {
-    Vec3d sum;
-    double mass = 0;
+/// [body, by its first particle] the displacement from the safe state that all of it has in common, which
+/// nothing within it takes from it; 0 where any are held.
+std::vector<Vec3d> SurfaceContacts::common_displacements(Places goals) const {
+    std::vector<Vec3d> sums(goals.size());
+    std::vector<double> masses(goals.size());
     for (std::size_t i = 0; i < goals.size(); ++i) {
-        if (is_held_[i] != 0) return {};
-        sum += (goals[i] - safe_places_[i]) * masses_[i];
-        mass += masses_[i];
+        const double mass = is_held_[i] != 0 ? std::numeric_limits<double>::infinity() : masses_[i];
+        masses[bodies_[i]] += mass;
+        if (is_held_[i] == 0) sums[bodies_[i]] += (goals[i] - safe_places_[i]) * mass;
     }
-    return sum * (1 / mass);
+    for (std::size_t i = 0; i < goals.size(); ++i)
+        if (bodies_[i] == i) sums[i] *= 1 / masses[i];
+    return sums;
 }
 
-/// Goes from the safe state towards goals as far as the planes between the pairs allow. Less far, where too
-/// little room or ever more pairs are found, or where particles that are stopped strain what goes on beside
-/// them so that energy rises, but for what all have in common; at last what is not held stays.
+/// Marks what did not reach its goal. @param is_stopped  [body] set to 1 where any of it did not
+/// @return how many particles did not, and whether they belong to bodies that were not marked
+SurfaceContacts::Stopped SurfaceContacts::mark_stopped(Places goals, Places ends,
+                                                       std::span<std::uint8_t> is_stopped) {
+    Stopped stopped;
+    const std::vector<std::uint8_t> before(is_stopped.begin(), is_stopped.end());
+    missed_ = 0;
+    for (std::size_t i = 0; i < goals.size(); ++i) {
+        const double missed = length(goals[i] - ends[i]);
+        missed_ = std::max(missed_, missed);
+        if (!(missed > 0)) continue;
+        ++stopped.count;
+        is_touching_[i] = is_stopped[bodies_[i]] = 1;
+        if (before[bodies_[i]] == 0) stopped.is_any_new = true;
+    }
+    return stopped;
+}
+
+/// Goes from the safe state towards goals as far as the planes between the pairs allow. Bodies of which any
+/// particle is stopped go less far, where too little room or ever more pairs are found, or where what is
+/// stopped strains what goes on beside it so that energy rises, but for what all of a body have in common; at
+/// last what is not held stays, and the others go around it.
 /// @param places  in: the goals. Out: the new safe state, whose pairs are not measured yet
 /// @return how many particles were stopped
 std::size_t SurfaceContacts::go_towards(std::span<Vec3d> places, const StepEnergy& energy,
                                         const Workers& workers) {
-    const std::vector<Vec3d> goals(places.begin(), places.end()), from = safe_places_;
-    const Vec3d common = common_displacement(goals);
-    std::optional<double> most;
+    constexpr int kLast = 2 * threshold::kMostHalvings;
+    const std::vector<Vec3d> wanted(places.begin(), places.end()), from = safe_places_;
+    const std::vector<Vec3d> common = common_displacements(wanted);
+    std::vector<Vec3d> goals = wanted;
+    std::vector<std::uint8_t> is_stopped(goals.size()); // [body]
+    std::optional<double> most_energy;
     std::size_t most_stopped = 0;
     for (int halvings = 0;; ++halvings) {
         const double share = halvings < threshold::kMostHalvings ? std::ldexp(1.0, -halvings) : 0;
-        const Vec3d kept = share > 0 ? common : Vec3d{};
-        const auto goal_of = [&](std::size_t i) {
-            if (is_held_[i] != 0 || share == 1) return goals[i];
-            return from[i] + kept + (goals[i] - from[i] - kept) * share;
-        };
-        for (std::size_t i = 0; i < goals.size(); ++i) places[i] = goal_of(i);
-        const bool is_safe = find_ends(places, masses_, 1, workers);
-        std::size_t stopped = 0;
-        missed_ = 0;
         for (std::size_t i = 0; i < goals.size(); ++i) {
-            const double missed = length(goal_of(i) - places[i]);
-            missed_ = std::max(missed_, missed);
-            if (!(missed > 0)) continue;
-            ++stopped;
-            is_touching_[i] = 1;
+            if (is_held_[i] != 0 || is_stopped[bodies_[i]] == 0) continue;
+            const Vec3d kept = share > 0 ? common[bodies_[i]] : Vec3d{};
+            goals[i] = from[i] + kept + (wanted[i] - from[i] - kept) * share;
         }
-        most_stopped = std::max(most_stopped, stopped);
-        if (share == 0 || (is_safe && most_stopped == 0)) break;
-        if (!is_safe) continue;
-        if (!most) most = energy(from);
-        if (energy(places) <= *most) break;
+        std::copy(goals.begin(), goals.end(), places.begin());
+        const bool is_safe = find_ends(places, masses_, 1, workers);
+        const Stopped stopped = mark_stopped(goals, places, is_stopped);
+        most_stopped = std::max(most_stopped, stopped.count);
+        if (is_safe && most_stopped == 0) break;
+        if (share == 0) {
+            if (halvings == kLast || (is_safe && !stopped.is_any_new)) break;
+            if (!stopped.is_any_new || halvings + 1 == kLast)
+                std::fill(is_stopped.begin(), is_stopped.end(), 1);
+        } else if (is_safe) {
+            if (!most_energy) most_energy = energy(from);
+            if (energy(places) <= *most_energy) break;
+        }
     }
     for (std::size_t i = 0; i < goals.size(); ++i) {
         safe_places_[i] = places[i];
@@ -409,15 +432,19 @@ bool SurfaceContacts::stops() const {
 
 void SurfaceContacts::add_loads(Places places, std::span<const Vec3d> forces,
                                 std::span<const std::uint32_t> held_by) {
-    // Where stops have shortened the step of all, those beside the stopped ones are stopped, too.
-    std::vector<std::size_t> stops(collider_count_);
-    for (const std::uint32_t side : stopped_by_)
-        if (side < collider_count_) ++stops[side];
-    const auto most = std::max_element(stops.begin(), stops.end());
-    const std::uint32_t others =
-        most != stops.end() && *most > 0 ? static_cast<std::uint32_t>(most - stops.begin()) : kNoObstacle;
+    if (collider_count_ == 0) return;
+    // Where stops have shortened the step of a body, those beside the stopped ones are stopped, too.
+    std::vector<std::size_t> stops(bodies_.size() * collider_count_);
+    for (std::size_t i = 0; i < bodies_.size(); ++i)
+        if (stopped_by_[i] < collider_count_) ++stops[bodies_[i] * collider_count_ + stopped_by_[i]];
+    const auto stopped_with = [&](std::size_t body) {
+        const auto begin = stops.begin() + static_cast<std::ptrdiff_t>(body * collider_count_);
+        const auto most = std::max_element(begin, begin + static_cast<std::ptrdiff_t>(collider_count_));
+        return *most > 0 ? static_cast<std::uint32_t>(most - begin) : kNoObstacle;
+    };
     for (std::size_t i = 0; i < forces.size(); ++i) {
-        const std::uint32_t stopped_by = stopped_by_[i] < collider_count_ ? stopped_by_[i] : others;
+        const std::uint32_t stopped_by =
+            stopped_by_[i] < collider_count_ ? stopped_by_[i] : stopped_with(bodies_[i]);
         const std::uint32_t collider = is_held_[i] != 0 ? held_by[i] : stopped_by;
         if (collider < collider_count_) contacts_.add_load(collider, places[i], forces[i], frames_[collider]);
     }

@@ -27,9 +27,11 @@ namespace echinus {
 class SurfaceContacts {
   public:
     /// @param masses  [particle]; infinite or of any size where a particle is held
+    /// @param bodies  [particle] the first one of its body
     /// @param options  with a positive thickness
     SurfaceContacts(const Deformable& deformable, const std::vector<Collider>& colliders,
-                    std::span<const double> masses, const SimulationOptions& options);
+                    std::span<const double> masses, std::span<const std::uint32_t> bodies,
+                    const SimulationOptions& options);
 
     /// Begins a frame of one step or more, whose loads are summed.
     void begin_frame();
@@ -102,7 +104,12 @@ class SurfaceContacts {
     Vec3d slip_start(const ContactSide& side, const Pair& pair, const std::array<double, 4>& shares) const;
     bool find_ends(std::span<Vec3d> places, std::span<const double> masses, float share,
                    const Workers& workers);
-    Vec3d common_displacement(Places goals) const;
+    std::vector<Vec3d> common_displacements(Places goals) const;
+    struct Stopped {
+        std::size_t count = 0;
+        bool is_any_new = false;
+    };
+    Stopped mark_stopped(Places goals, Places ends, std::span<std::uint8_t> is_stopped);
     std::size_t go_towards(std::span<Vec3d> places, const StepEnergy& energy, const Workers& workers);
     void find_contacts(Places goals, bool is_solved);
     void add_contacts(const ContactSide& side, Places goals, bool is_solved);
@@ -110,6 +117,7 @@ class SurfaceContacts {
 
     std::shared_ptr<const Elements> own_;
     std::vector<double> masses_;
+    std::vector<std::uint32_t> bodies_; ///< [particle]
     std::size_t collider_count_;
     std::vector<ContactSide> sides_; ///< of the colliders, then of itself
     ParticleContacts particles_;
