@@ -326,8 +326,8 @@ class [[gnu::visibility("hidden")]] Solver; // src/simulation/solver.hpp
 /// every instruction set and number of threads; tested on x86-64 and WebAssembly. Copies are independent.
 class Simulation {
   public:
-    /// Allocates what step() needs, but for the arrays that it says may grow. Rotations whose quaternion is
-    /// off the unit length by no more than 1e-4, as rounding to float leaves them, are brought to it.
+    /// Under Jakobsen allocates all that step() needs. Rotations whose quaternion is off the unit length by
+    /// no more than 1e-4, as rounding to float leaves them, are brought to it.
     /// @throws Error InvalidOptions, naming what is at fault, when an option is out of range, the arrays of
     /// the deformable do not fit together, a stick or a face names a particle that does not exist, a number
     /// is not finite, or a collider has a scale of 0, a rotation that is not of unit length, a null pointer

@@ -20,29 +20,29 @@ using namespace echinus::test;
 
 namespace {
 
-constexpr std::uint32_t kSide = 7;
-constexpr std::size_t kCount = kSide * kSide;
-constexpr float kReach = 0.08F;
+constexpr std::uint32_t kGridSide = 7;
+constexpr std::size_t kGridCount = kGridSide * kGridSide;
+constexpr float kGridReach = 0.08F;
 
 std::shared_ptr<const Elements> grid() {
     std::vector<Triangle> faces;
-    for (std::uint32_t row = 0; row + 1 < kSide; ++row)
-        for (std::uint32_t column = 0; column + 1 < kSide; ++column) {
-            const std::uint32_t a = row * kSide + column, b = a + 1, c = a + kSide, d = c + 1;
+    for (std::uint32_t row = 0; row + 1 < kGridSide; ++row)
+        for (std::uint32_t column = 0; column + 1 < kGridSide; ++column) {
+            const std::uint32_t a = row * kGridSide + column, b = a + 1, c = a + kGridSide, d = c + 1;
             faces.push_back({a, b, d});
             faces.push_back({a, d, c});
         }
-    return std::make_shared<const Elements>(kCount, faces, std::vector<Edge>{});
+    return std::make_shared<const Elements>(kGridCount, faces, std::vector<Edge>{});
 }
 
 /// Vertices of a grid one unit wide at a height, each somewhere near its place.
 PointArrays places_at(float height, float spread, Random& random) {
     const auto off = [&] { return uniform(random, -spread, spread); };
     PointArrays places;
-    places.resize(kCount);
-    for (std::uint32_t i = 0; i < kCount; ++i)
-        places.set(i, {static_cast<float>(i % kSide) / (kSide - 1) + off(),
-                       static_cast<float>(i / kSide) / (kSide - 1) + off(), height + off()});
+    places.resize(kGridCount);
+    for (std::uint32_t i = 0; i < kGridCount; ++i)
+        places.set(i, {static_cast<float>(i % kGridSide) / (kGridSide - 1) + off(),
+                       static_cast<float>(i / kGridSide) / (kGridSide - 1) + off(), height + off()});
     return places;
 }
 
@@ -69,7 +69,7 @@ std::vector<Pair> pairs_of(const MovingElements& own, const MovingElements& othe
         for (std::uint32_t b = is_of_itself ? a + 1 : 0; b < other.elements.all.size(); ++b)
             elements.push_back({a, b});
     std::vector<Pair> pairs;
-    find_near_pairs(elements, own, other, kReach, pairs);
+    find_near_pairs(elements, own, other, kGridReach, pairs);
     return pairs;
 }
 
@@ -95,12 +95,12 @@ double nearest_on_the_way(const Pair& pair, const MovingElements& own, const Mov
 /// The pairs of a set that are nearer than the reach where the surface is now.
 std::vector<Pair> near_pairs(PairSet& set, const PointArrays& listed, const PointArrays& now,
                              const PointArrays& obstacle) {
-    std::vector<float> strayed(kCount), ahead(kCount);
-    for (std::size_t i = 0; i < kCount; ++i) strayed[i] = length(now[i] - listed[i]);
-    set.measure({listed, now, now, now, strayed, ahead}, obstacle, kReach / 2, true, Workers(1));
+    std::vector<float> strayed(kGridCount), ahead(kGridCount);
+    for (std::size_t i = 0; i < kGridCount; ++i) strayed[i] = length(now[i] - listed[i]);
+    set.measure({listed, now, now, now, strayed, ahead}, obstacle, kGridReach / 2, true, Workers(1));
     std::vector<Pair> result;
     for (std::size_t p = 0; p < set.pairs().size(); ++p)
-        if (set.separations()[p].gap < kReach / 2) result.push_back(set.pairs()[p]);
+        if (set.separations()[p].gap < kGridReach / 2) result.push_back(set.pairs()[p]);
     return sorted(std::move(result));
 }
 
@@ -115,18 +115,18 @@ TEST(NearPairs, AreAllThatComeNearOnTheirDisplacements) {
         const MovingElements moving{*own, from, to}, standing{*other, at, at};
         const std::vector<Pair> found = sorted(pairs_of(moving, standing));
         std::size_t near_count = 0;
-        for (std::uint32_t v = 0; v < kCount; ++v)
+        for (std::uint32_t v = 0; v < kGridCount; ++v)
             for (const Element& face : other->all) {
                 const Pair pair{{v, face.vertices[0], face.vertices[1], face.vertices[2]},
                                 PairKind::VertexFace};
-                if (!(nearest_on_the_way(pair, moving, standing) < kReach * 0.999)) continue;
+                if (!(nearest_on_the_way(pair, moving, standing) < kGridReach * 0.999)) continue;
                 ++near_count;
                 EXPECT_TRUE(
                     std::binary_search(found.begin(), found.end(), pair, [](const Pair& a, const Pair& b) {
                         return order_of(a) < order_of(b);
                     }));
             }
-        EXPECT_GT(near_count, kCount);
+        EXPECT_GT(near_count, kGridCount);
         EXPECT_LT(found.size(), own->all.size() * other->all.size());
     }
 }
@@ -153,20 +153,20 @@ TEST(NearPairs, OfVerticesWhoseDisplacementsChangeAreThoseOfAListThatIsMadeAnew)
         const PointArrays from = places_at(0.3F, 0.05F, random), to = places_at(0.5F, 0.05F, random),
                           at = places_at(0, 0.05F, random);
         PairSet set(own, from, other, at);
-        set.set_reach(kReach);
-        set.list({from, to, at, at}, std::vector<std::uint8_t>(kCount, 1), false, Workers(1));
+        set.set_reach(kGridReach);
+        set.list({from, to, at, at}, std::vector<std::uint8_t>(kGridCount, 1), false, Workers(1));
         // Some come near. The others go where they were going, or stay where they have got.
         const PointArrays elsewhere = places_at(0.02F, 0.05F, random);
         PointArrays start = starts_there ? from : to, end = to;
-        std::vector<std::uint8_t> is_other(kCount);
-        for (std::size_t i = 0; i < kCount; i += 5) {
+        std::vector<std::uint8_t> is_other(kGridCount);
+        for (std::size_t i = 0; i < kGridCount; i += 5) {
             is_other[i] = 1;
             end.set(i, elsewhere[i]);
         }
         set.list({start, end, at, at}, is_other, starts_there, Workers(1));
         PairSet anew(own, from, other, at);
-        anew.set_reach(kReach);
-        anew.list({start, end, at, at}, std::vector<std::uint8_t>(kCount, 1), false, Workers(1));
+        anew.set_reach(kGridReach);
+        anew.list({start, end, at, at}, std::vector<std::uint8_t>(kGridCount, 1), false, Workers(1));
         const std::vector<Pair> near = near_pairs(anew, start, end, at);
         EXPECT_GT(near.size(), 20u);
         EXPECT_TRUE(are_same(near_pairs(set, start, end, at), near)) << starts_there;
