@@ -1,5 +1,7 @@
 #include "mechanics/bending.hpp"
 
+#include "geometry/elementary.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -34,7 +36,7 @@ Angle angle_of(const std::array<Vec3d, 4>& corners) {
     const double n1_sq = dot(n1, n1), n2_sq = dot(n2, n2), edge_length = length(edge);
     Angle angle{};
     if (!(n1_sq > 0) || !(n2_sq > 0) || !(edge_length > 0)) return angle;
-    angle.value = std::atan2(dot(cross(n2, n1), edge) / edge_length, dot(n1, n2));
+    angle.value = portable_atan2(dot(cross(n2, n1), edge) / edge_length, dot(n1, n2));
     // Each corner turns its face about the edge by its height.
     const Vec3d by_c = n1 * (edge_length / n1_sq), by_d = n2 * (edge_length / n2_sq);
     const double c_along = dot(c - a, edge) / (edge_length * edge_length);

@@ -36,7 +36,7 @@ struct Volume {
         sixfold += dot(a, cross(b, c));
         area += length(cross(b - a, c - a));
     }
-    bool is_some() const { return std::abs(sixfold) > kLeastVolume * std::pow(area, 1.5); }
+    bool is_some() const { return std::abs(sixfold) > kLeastVolume * area * std::sqrt(area); }
 };
 
 } // namespace

@@ -1,5 +1,6 @@
 #include "simulation/contact/contact_set.hpp"
 
+#include "geometry/elementary.hpp"
 #include "simulation/contact/thresholds.hpp"
 
 #include <algorithm>
@@ -18,7 +19,7 @@ struct GapEnergy {
 GapEnergy gap_energy(double gap, double thickness, double force) {
     if (!(gap < thickness)) return {0, 0, 0};
     const double share = std::max(gap / thickness, threshold::kLeastBarrierShare);
-    const double open = 1 - share, logarithm = std::log(share);
+    const double open = 1 - share, logarithm = portable_log(share);
     GapEnergy energy{-open * open * logarithm, 2 * open * logarithm - open * open / share,
                      -2 * logarithm + 4 * open / share + open * open / (share * share)};
     // Nearer, or beyond the plane, where only trials come, the barrier goes on as a parabola.
