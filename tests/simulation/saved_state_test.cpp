@@ -277,3 +277,17 @@ TEST(ThreadCount, MayChangeWithASavedStateOrACopy) {
     EXPECT_EQ(two.save_state(), one.save_state());
     EXPECT_EQ(copy.save_state(), one.save_state());
 }
+
+/// A vertex at the model's origin, where one would be by mistake whose pairs are listed there.
+TEST(SavedState, OfASimulationThatHasNotBegunChangesNoPairs) {
+    TriangleMesh box = make_box({1, 1, 0.2}, 4);
+    for (Vec3f& v : box.vertices) v.z -= 0.1F;
+    const auto falls = [&](bool is_saved) {
+        Simulation simulation(sheet_at(0.003, 1, 5), colliders_of({box}),
+                              {.thickness = 0.01, .surface_collision = true});
+        if (is_saved) simulation.save_state();
+        for (int i = 0; i < 5; ++i) simulation.step();
+        return simulation.profile().measured_pair_count;
+    };
+    EXPECT_EQ(falls(true), falls(false));
+}

@@ -461,8 +461,14 @@ void SurfaceContacts::archive(StateArchive& state) {
             places.resize(own_->vertex_count());
             state.points(places);
         };
-        archive_places(side.listed_from);
-        archive_places(side.listed_to);
+        bool is_listed = side.is_listed();
+        state.flag(is_listed);
+        if (is_listed) {
+            archive_places(side.listed_from);
+            archive_places(side.listed_to);
+        } else {
+            side.listed_from = side.listed_to = {};
+        }
         state.value(side.away.from);
         state.value(side.away.to);
         state.require(side.away.from >= 0 && side.away.to >= 0);
