@@ -1,14 +1,91 @@
 #include "compare/comparison_report.hpp"
 
-#include "compare/columns.hpp"
-#include "compare/plot.hpp"
 #include "console/machine.hpp"
-#include "encoding.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <initializer_list>
 #include <string_view>
+#include <utility>
+
+namespace echinus::comparison {
+
+namespace {
+
+/// Three digits, for easy comparison, without exponents.
+std::string digits(double value) {
+    if (value > 0 && value < 0.00005) return "<0.0001";
+    const int places = value >= 100 ? 0 : value >= 10 ? 1 : value >= 1 ? 2 : value >= 0.1 ? 3 : 4;
+    return value == 0 ? "0" : fmt::format("{:.{}f}", value, places);
+}
+
+/// A figure of a set; a dash where the system was not measured on it.
+template <typename Value>
+Column of_set(const char* group, const std::string& set, Value value) {
+    return {group, set, [set, value](const Figures& figures) -> std::string {
+                const auto found = std::ranges::find(figures.sets, set, &SetFigures::set);
+                return found == figures.sets.end() ? "-" : value(*found);
+            }};
+}
+
+} // namespace
+
+std::vector<Column> time_columns(const Comparison& comparison) {
+    std::vector<Column> columns{
+        {"size", "MB",
+         [](const Figures& f) { return fmt::format("{:.3f}", 1e-6 * static_cast<double>(f.byte_count)); }},
+        {"build", "ms", [](const Figures& f) { return digits(f.build_ms); }}};
+    for (const std::string& set : comparison.set_names)
+        columns.push_back(
+            of_set("inside?, ns", set, [](const SetFigures& f) { return digits(f.contains.ns); }));
+    for (const std::string& set : comparison.set_names)
+        columns.push_back(
+            of_set("contact, ns", set, [](const SetFigures& f) { return digits(f.contacts.ns); }));
+    return columns;
+}
+
+std::vector<Column> error_columns(const Comparison& comparison) {
+    std::vector<Column> columns;
+    for (const std::string& set : comparison.set_names)
+        columns.push_back(of_set("wrong side, %", set,
+                                 [](const SetFigures& f) { return digits(100 * f.errors.wrong_share); }));
+    using Statistic = std::pair<const char*, double Spread::*>;
+    const Statistic mean{"mean", &Spread::mean}, most{"99 %", &Spread::most}, worst{"worst", &Spread::worst};
+    const auto add = [&](const char* group, double unit, Spread ErrorSummary::*error,
+                         std::initializer_list<Statistic> parts) {
+        for (const auto& [head, part] : parts) {
+            columns.push_back(
+                of_set(group, "S", [unit, error, part = part](const SetFigures& f) -> std::string {
+                    const Spread& spread = f.errors.*error;
+                    return spread.count == 0 ? "-" : digits(unit * spread.*part);
+                }));
+            columns.back().head = head;
+        }
+    };
+    add("depth error on S, % of R", 100, &ErrorSummary::depth, {mean, most, worst});
+    // The worst angle is always that of a particle with two ways out.
+    add("normal error on S, degrees", 1, &ErrorSummary::normal, {mean, most});
+    return columns;
+}
+
+std::vector<std::string> remarks_on(const Comparison& comparison) {
+    std::vector<std::string> remarks;
+    for (const Figures& figures : comparison.systems)
+        if (!figures.excess.empty())
+            remarks.push_back(
+                fmt::format("{}: more bytes than it may take; {}.", figures.system->title, figures.excess));
+    for (const Refusal& refusal : comparison.refusals)
+        remarks.push_back(fmt::format("{}: left out; {}.", refusal.system->title, refusal.reason));
+    if (comparison.parts_overlap)
+        remarks.push_back(
+            "Parts of the mesh overlap or lie in each other: to the judge, the exact map and the "
+            "fields their union is inside; Embree, Bullet and the distance maps count crossings, "
+            "so that what they have wrong is partly another meaning of inside.");
+    return remarks;
+}
+
+} // namespace echinus::comparison
 
 using namespace echinus;
 using namespace echinus::comparison;
@@ -141,124 +218,4 @@ std::string to_text(const Comparison& comparison, const CompareOptions& options,
     for (const std::string& remark : remarks) text += remark + "\n";
     return text + "\nTimes are processor times on one thread, one call for a whole set. The judge is an "
                   "exact map.\n";
-}
-
-namespace {
-
-constexpr std::string_view kStyle = R"(
-:root { --paper: #faf9f6; --ink: #23262b; --quiet: #686d76; --line: #e1ded6; --accent: #2f6f8f; }
-@media (prefers-color-scheme: dark) {
-  :root { --paper: #16181c; --ink: #e6e4df; --quiet: #9a9fa8; --line: #33373e; --accent: #7cb9d4; }
-  img, svg { filter: brightness(0.88); }
-}
-body { margin: 0; background: var(--paper); color: var(--ink); font: 1rem/1.55 system-ui, "Liberation Sans", sans-serif; }
-main { max-width: 66rem; margin: 0 auto; padding: clamp(1.5rem, 5vw, 4rem) clamp(1rem, 4vw, 2rem); }
-h1 { margin: 0; font-size: 2.2rem; letter-spacing: -0.02em; overflow-wrap: anywhere; }
-h2 { margin: 3rem 0 0.5rem; font-size: 1.4rem; }
-p, li { max-width: 46rem; }
-header img { float: right; width: min(24rem, 45%); margin: 0 0 1rem 1.5rem; border-radius: 8px; }
-.wide { clear: both; overflow-x: auto; margin: 1.2rem 0; }
-table { border-collapse: collapse; font-variant-numeric: tabular-nums; font-size: 0.94rem; }
-th, td { padding: 0.35rem 0.7rem; text-align: right; border-bottom: 1px solid var(--line); white-space: nowrap; }
-thead th:first-child { text-align: left; }
-thead th { color: var(--quiet); font-weight: 600; }
-tbody th { text-align: left; font-weight: 500; }
-.group { text-align: center; border-left: 1px solid var(--line); }
-.first { border-left: 1px solid var(--line); }
-.ours th, .ours td { color: var(--accent); font-weight: 600; }
-svg { width: 100%; height: auto; margin: 1rem 0; border-radius: 8px; }
-.quiet { color: var(--quiet); }
-)";
-
-bool starts_group(const std::vector<Column>& columns, std::size_t k) {
-    return k == 0 || columns[k].group != columns[k - 1].group;
-}
-
-std::string head_of(const std::vector<Column>& columns) {
-    std::string groups = "<tr><th></th>", heads = "<tr><th scope=\"col\">system</th>";
-    for (std::size_t first = 0, last = 0; first < columns.size(); first = last) {
-        while (last < columns.size() && columns[last].group == columns[first].group) ++last;
-        groups += fmt::format("<th class=\"group\" colspan=\"{}\">{}</th>", last - first,
-                              escaped(columns[first].group));
-    }
-    for (std::size_t k = 0; k < columns.size(); ++k)
-        heads += fmt::format("<th scope=\"col\"{}>{}</th>",
-                             starts_group(columns, k) ? " class=\"first\"" : "", escaped(columns[k].head));
-    return "<thead>" + groups + "</tr>\n" + heads + "</tr></thead>\n";
-}
-
-std::string html_table(const std::vector<Column>& columns, const Comparison& comparison) {
-    std::string html = "<div class=\"wide\"><table>\n" + head_of(columns) + "<tbody>\n";
-    for (const Figures& figures : comparison.systems) {
-        html += fmt::format("<tr{}><th scope=\"row\">{}</th>",
-                            line_style_of(*figures.system).dashed ? "" : " class=\"ours\"",
-                            escaped(figures.system->title));
-        for (std::size_t k = 0; k < columns.size(); ++k)
-            html += fmt::format("<td{}>{}</td>", starts_group(columns, k) ? " class=\"first\"" : "",
-                                escaped(columns[k].cell(figures)));
-        html += "</tr>\n";
-    }
-    return html + "</tbody></table></div>\n";
-}
-
-std::string list_of(const std::vector<std::string>& items) {
-    if (items.empty()) return {};
-    std::string html = "<ul>\n";
-    for (const std::string& item : items) html += "<li>" + escaped(item) + "</li>\n";
-    return html + "</ul>\n";
-}
-
-std::string plots_of(const Comparison& comparison) {
-    std::string html;
-    for (const Plot& plot : curve_plots(comparison)) html += svg(plot);
-    return html;
-}
-
-std::string bytes_of_each(const Comparison& comparison) {
-    std::vector<std::string> lines;
-    for (const Figures& figures : comparison.systems)
-        lines.push_back(std::string(figures.system->title) + ": " + figures.counted + ".");
-    return list_of(lines);
-}
-
-} // namespace
-
-std::string to_html(const Comparison& comparison, const CompareOptions& options, const std::string& mesh_name,
-                    const Image& picture) {
-    const std::string name = escaped(mesh_name);
-    std::string html = fmt::format(
-        "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">\n"
-        "<meta name=\"viewport\" content=\"width=device-width\">\n<title>{0}: systems compared</title>\n"
-        "<style>{1}</style></head>\n<body><main>\n<header><img alt=\"The model {0}\" "
-        "src=\"data:image/png;base64,{2}\">\n<h1>{0}</h1>\n"
-        "<p>{3} faces, bounding radius R = {4:.4g}. Each system has at most {5} bytes and is asked about the "
-        "same particles, {6} in each set: U everywhere in the bounding sphere, S near the surface (moved off "
-        "it by a normal distribution of 1 % of R), C like a cloth that lies over the model.</p></header>\n",
-        name, kStyle, base64(encode_png(picture)), comparison.face_count, comparison.radius,
-        options.byte_budget, options.point_count);
-    html += "<h2>How long, how many bytes</h2>\n" + html_table(time_columns(comparison), comparison);
-    html += "<h2>How wrong</h2>\n" + html_table(error_columns(comparison), comparison);
-    html += list_of(remarks_on(comparison));
-    if (!comparison.curves.empty())
-        html +=
-            "<h2>Over sizes, near the surface</h2>\n<p>Down and to the left is better. Dashed: not a map of "
-            "Echinus.</p>\n" +
-            plots_of(comparison);
-    html += fmt::format(
-        "<h2>How it was measured</h2>\n"
-        "<p>Times are processor times: of builds on one thread (OpenVDB's: summed over its threads), of "
-        "queries "
-        "per particle, one call for a whole set on one thread, the systems taking turns, medians. {}.</p>\n"
-        "<p>The judge is an exact map, so its own errors are 0 here by definition; Echinus proves it "
-        "against CGAL's exact arithmetic elsewhere. It is exact on a lattice with a step of 1.9e-6 R; "
-        "particles nearer to the surface than 2e-6 R count as right. The depth error of a particle inside is "
-        "how far the "
-        "answered "
-        "depth is from the distance to the surface, 0 being answered where the particle was missed. The "
-        "normal "
-        "error is the angle to the way to the nearest point. Maps that push along rays from a centre "
-        "(distance "
-        "and superquadric maps) answer that depth, which is longer.</p>\n<p>What the bytes are:</p>\n{}",
-        escaped(describe_machine()), bytes_of_each(comparison));
-    return html + "</main></body></html>\n";
 }

@@ -9,11 +9,8 @@
 #include "run_program.hpp"
 
 #include <echinus/error.hpp>
-#include <echinus_render/render.hpp>
 
 #include <algorithm>
-#include <array>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -28,7 +25,6 @@ constexpr std::size_t kCurveLength = 8; // from a sixteenth of the budget to eig
 struct CompareArguments {
     MeshArgument mesh;
     comparison::CompareOptions options;
-    std::filesystem::path page;
     bool repair = false;
     bool curves = false;
     bool json = false;
@@ -44,40 +40,18 @@ TriangleMesh read_closed_mesh(const CompareArguments& arguments) {
     });
 }
 
-Image picture_of(const TriangleMesh& mesh, Axis up) {
-    constexpr std::uint32_t kWidth = 768, kHeight = 640;
-    const std::array<Vec3d, 3> axes{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
-    std::array<RenderedObject, 1> objects;
-    objects[0].mesh = mesh;
-    View view;
-    view.up = axes[static_cast<std::size_t>(up)];
-    RenderOptions options;
-    options.width = kWidth;
-    options.height = kHeight;
-    return render(objects, camera_for(objects, view, static_cast<double>(kWidth) / kHeight), options);
-}
-
 void compare(CompareArguments& arguments) {
     arguments.mesh.require_format();
-    require_one_result(arguments.page, arguments.json);
-    require_another_file(arguments.mesh.path, arguments.page);
     const TriangleMesh mesh = read_closed_mesh(arguments);
-    if (arguments.curves || !arguments.page.empty()) arguments.options.curve_length = kCurveLength;
-    std::optional<Output> page; // opened before the work, which takes minutes, so that it is not for nothing
-    if (!arguments.page.empty()) page.emplace(arguments.page);
+    if (arguments.curves) arguments.options.curve_length = kCurveLength;
     StageBars bars;
     arguments.options.report_progress = std::ref(bars);
     const Comparison result =
         naming_mesh(arguments.mesh.name(), [&] { return comparison::compare(mesh, arguments.options); });
     bars.finish();
-    if (page) {
-        page->write(to_html(result, arguments.options, arguments.mesh.name(),
-                            picture_of(mesh, arguments.options.up)));
-        page->commit();
-    }
     if (arguments.json)
         print(to_json(result, arguments.options, arguments.mesh.name()).indented());
-    else if (arguments.page != kStandardStream)
+    else
         print(to_text(result, arguments.options, arguments.mesh.name()));
 }
 
@@ -131,14 +105,11 @@ void add_options(Command command, CompareArguments& arguments) {
         .type_name("COUNT")
         .show_default();
     add_choice<Axis>(command, "--up", options.up, {{"x", Axis::X}, {"y", Axis::Y}, {"z", Axis::Z}},
-                     "Which axis of the mesh points up, for the cloth and the picture");
+                     "Which axis of the mesh points up, for the cloth");
     command.add_flag("--repair", arguments.repair, "Mend the mesh first, as `echinus build --repair` does");
     arguments.mesh.add_format_option(command);
     command.add_flag("--curves", arguments.curves,
-                     "Measure each system in eight sizes, too; takes some minutes. --html does");
-    command.add("--html", &arguments.page, "Write a page with tables and plots, complete in one file, or -")
-        .not_empty()
-        .type_name("FILE");
+                     "Measure each system in eight sizes, too; takes some minutes");
     command.add_flag("--json", arguments.json, "Print one JSON object");
 }
 
@@ -151,7 +122,7 @@ int main(int argc, char** argv) {
         add_options(command, arguments);
         command.footer(
             "Examples:\n  echinus-compare torus.obj\n"
-            "  echinus-compare horse.obj --systems exact,dense,openvdb --bytes 1MB --html report.html");
+            "  echinus-compare horse.obj --systems exact,dense,openvdb --bytes 1MB --curves --json");
         command.action([&] { compare(arguments); });
     };
     return run_program("echinus-compare",

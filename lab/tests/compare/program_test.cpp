@@ -68,24 +68,6 @@ TEST_F(CompareProgram, HasAllSystemsOfThePaperUnlessToldOtherwise) {
         EXPECT_TRUE(contains(names, name)) << names;
 }
 
-TEST_F(CompareProgram, WritesAPageThatIsCompleteInItself) {
-    expect_success(quick({"--bytes", "64KB", "--html", "report.html"}));
-    const std::string page = content("report.html");
-    EXPECT_TRUE(page.starts_with("<!doctype html>"));
-    EXPECT_TRUE(page.ends_with("</html>\n"));
-    EXPECT_TRUE(contains(page, "src=\"data:image/png;base64,iVBORw0KGgo"));
-    EXPECT_TRUE(contains(page, "<polyline"));
-    for (const char* from_elsewhere : {"<script", "<link", "src=\"http", "url("})
-        EXPECT_FALSE(contains(page, from_elsewhere)) << from_elsewhere;
-}
-
-TEST_F(CompareProgram, EscapesTheNameOfAFileOnItsPage) {
-    write("<b>&.obj", obj_text(echinus::make_box({1, 1, 1})));
-    expect_success({"<b>&.obj", "--systems", "exact", "--points", "100", "--html", "page.html"});
-    EXPECT_TRUE(contains(content("page.html"), "&lt;b&gt;&amp;.obj"));
-    EXPECT_FALSE(contains(content("page.html"), "<b>"));
-}
-
 TEST_F(CompareProgram, MeasuresCurvesWhereTheyAreWanted) {
     const json report = json::parse(expect_success(quick({"--bytes", "64KB", "--curves", "--json"})));
     ASSERT_EQ(report["curves"].size(), 2U);
@@ -117,16 +99,7 @@ TEST_F(CompareProgram, RefusesWrongUse) {
     expect_failure(2, "there is no system 'octree'", {"torus.obj", "--systems", "octree"});
     expect_failure(2, "--systems", {"torus.obj", "--systems", "dense,,exact"});
     expect_failure(2, "'exact' is named twice", {"torus.obj", "--systems", "exact,dense,exact"});
-    expect_failure(2, "--html", quick({"--html", ""}));
     expect_failure(2, "--bytes", {"torus.obj", "--bytes", "630"});
     expect_failure(2, "--points", {"torus.obj", "--points", "5"});
-    expect_failure(2, "--json", quick({"--html", "-", "--json"}));
-    expect_failure(1, "no/such/folder", quick({"--html", "no/such/folder/page.html"}));
     expect_failure(1, "missing.obj", {"missing.obj"});
-}
-
-TEST_F(CompareProgram, LeavesTheMeshAloneWhenItsNameIsGivenForThePage) {
-    const std::string torus = content("torus.obj");
-    expect_failure(2, "torus.obj: this file is read", quick({"--html", "torus.obj"}));
-    EXPECT_EQ(content("torus.obj"), torus);
 }

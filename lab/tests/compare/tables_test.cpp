@@ -1,10 +1,6 @@
-#include "compare/columns.hpp"
-#include "compare/plot.hpp"
+#include "compare/comparison_report.hpp"
 
 #include <gtest/gtest.h>
-
-#include <cmath>
-#include <set>
 
 using namespace echinus;
 using namespace echinus::comparison;
@@ -51,61 +47,4 @@ TEST(Columns, HaveRemarksOnWhoExceedsTheBudgetAndWhoRefused) {
               std::string::npos);
     EXPECT_NE(remarks[2].find("Parts of the mesh overlap"), std::string::npos);
     EXPECT_NE(remarks[1].find("classified grid: left out; too small"), std::string::npos);
-}
-
-TEST(CurvePlots, PutAnErrorOfZeroAtTheEdgeAndLeaveOutWhatHasNoSizes) {
-    Comparison comparison = small_comparison();
-    comparison.curves = {{figures_of("exact", 300'000, 0), figures_of("exact", 600'000, 0)}, {}};
-    const std::vector<Plot> plots = curve_plots(comparison);
-    ASSERT_EQ(plots.size(), 4U);
-    for (const Plot& plot : plots) {
-        ASSERT_EQ(plot.curves.size(), 1U) << plot.title;
-        EXPECT_EQ(plot.curves[0].points.size(), 2U) << plot.title;
-        for (const PlotPoint& p : plot.curves[0].points) EXPECT_GT(std::min(p.x, p.y), 0) << plot.title;
-    }
-}
-
-TEST(CurvePlots, HaveAColourForEachSystem) {
-    std::set<std::string> colours;
-    for (const SystemType& system : all_systems()) colours.insert(line_style_of(system).colour);
-    EXPECT_EQ(colours.size(), all_systems().size());
-    EXPECT_FALSE(colours.contains("#444444")); // that of a system without one
-}
-
-namespace {
-
-Plot small_plot() {
-    return {
-        "error & bytes", "MB", "%", {{.name = "a < b", .points = {{1, 10}, {10, 1}}, .colour = "#123456"}}};
-}
-
-std::size_t count(const std::string& text, const std::string& word) {
-    std::size_t found = 0;
-    for (std::size_t at = text.find(word); at != std::string::npos; at = text.find(word, at + 1)) ++found;
-    return found;
-}
-
-} // namespace
-
-TEST(Plot, DrawsACurveWithItsPointsAndItsName) {
-    const std::string document = svg(small_plot());
-    EXPECT_EQ(count(document, "<svg"), 1U);
-    EXPECT_EQ(count(document, "</svg>"), 1U);
-    EXPECT_EQ(count(document, "<polyline"), 1U);
-    EXPECT_EQ(count(document, "<circle"), 2U);
-    EXPECT_EQ(count(document, "#123456"), 4U); // line, two points, legend
-}
-
-TEST(Plot, EscapesWhatMarkupWouldTakeForItsOwn) {
-    const std::string document = svg(small_plot());
-    EXPECT_EQ(count(document, "a &lt; b"), 1U);
-    EXPECT_EQ(count(document, "error &amp; bytes"), 1U);
-    EXPECT_EQ(count(document, "a < b"), 0U);
-}
-
-TEST(Plot, OfNothingIsAnEmptyDiagram) {
-    const std::string document = svg({"nothing", "x", "y", {}});
-    EXPECT_EQ(count(document, "nan"), 0U);
-    EXPECT_EQ(count(document, "inf"), 0U);
-    EXPECT_EQ(count(document, "</svg>"), 1U);
 }
