@@ -1,6 +1,5 @@
 // The faces, edges and vertices of surfaces: who owns what, what is near what, and lists of pairs.
 
-#include "simulation/surfaces/element_tree.hpp"
 #include "simulation/surfaces/elements.hpp"
 #include "simulation/surfaces/near_elements.hpp"
 #include "support/cloth_meshes.hpp"
@@ -13,7 +12,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <cstdint>
 #include <limits>
 #include <set>
@@ -50,12 +48,6 @@ void expect_each_owned_once(const Elements& elements) {
     EXPECT_EQ(std::set(elements.edges.begin(), elements.edges.end()).size(), elements.edges.size());
 }
 
-PointArrays arrays_of(const std::vector<Vec3f>& points) {
-    PointArrays arrays;
-    arrays.load(points);
-    return arrays;
-}
-
 /// Faces, threads and single points, spread over a cube.
 struct Scattered {
     std::vector<Element> elements;
@@ -81,24 +73,6 @@ struct Scattered {
             positions.set(i, positions[i] + in_cube(random, most));
     }
 };
-
-float apart(const Box& a, const Box& b, std::size_t axis) {
-    return std::max({a.low[axis] - b.high[axis], b.low[axis] - a.high[axis], 0.0F});
-}
-
-bool touch(const Box& a, const Box& b) {
-    return apart(a, b, 0) == 0 && apart(a, b, 1) == 0 && apart(a, b, 2) == 0;
-}
-
-/// Box after box.
-float nearest_box(const Scattered& scattered, const Box& box) {
-    float best = std::numeric_limits<float>::infinity();
-    for (const Element& element : scattered.elements) {
-        const Box other = box_of(element, scattered.positions);
-        best = std::min(best, std::hypot(apart(box, other, 0), apart(box, other, 1), apart(box, other, 2)));
-    }
-    return best;
-}
 
 } // namespace
 
@@ -132,45 +106,6 @@ TEST(Elements, AreListedAroundTheirVertices) {
             ++count;
         }
     EXPECT_EQ(count, 3 * sphere.faces.size());
-}
-
-TEST(ElementTree, VisitsWhatABoxTouchesOnceAlsoAfterItsElementsMoved) {
-    for (const std::size_t count : {1, 8, 9, 64, 65, 700}) {
-        Scattered scattered(count, 1);
-        ElementTree tree(scattered.elements, scattered.positions);
-        scattered.move(0.5F);
-        tree.refit(scattered.elements, scattered.positions,
-                   std::vector<std::uint8_t>(tree.group_count(), 0xFF), kOneThread);
-        Random random(2);
-        for (int i = 0; i < 100; ++i) {
-            Box box = box_of({}, arrays_of({in_cube(random, 1)}));
-            box.grow(uniform(random, 0, 0.5F));
-            std::vector<std::uint32_t> found, expected;
-            tree.visit_touching(box, [&](std::uint32_t e) { found.push_back(e); });
-            for (std::uint32_t e = 0; e < count; ++e)
-                if (touch(box, box_of(scattered.elements[e], scattered.positions))) expected.push_back(e);
-            std::sort(found.begin(), found.end());
-            ASSERT_EQ(found, expected);
-        }
-        Box everything = box_of({}, scattered.positions);
-        everything.grow(kInfinity);
-        std::size_t visited = 0;
-        tree.visit_touching(everything, [&](std::uint32_t e) { visited += e < count ? 1 : count + 1; });
-        EXPECT_EQ(visited, count);
-    }
-}
-
-TEST(ElementTree, BoundsTheDistanceOfABoxFromBelow) {
-    const Scattered scattered(500, 3);
-    const ElementTree tree(scattered.elements, scattered.positions);
-    Random random(4);
-    for (int i = 0; i < 500; ++i) {
-        Box box = box_of({}, arrays_of({in_cube(random, 2)}));
-        box.grow(uniform(random, 0, 0.05F));
-        const float most = uniform(random, 0, 2), exact = std::min(nearest_box(scattered, box), most);
-        EXPECT_LE(tree.distance(box, most), exact);
-        EXPECT_GE(tree.distance(box, most), exact * (1 - 1e-5F));
-    }
 }
 
 namespace {

@@ -1,6 +1,5 @@
 #include "simulation/surfaces/element_tree.hpp"
 
-#include <cmath>
 #include <limits>
 #include <numeric>
 
@@ -68,15 +67,6 @@ Box box_of(const Element& element, const PointArrays& positions) {
     return box;
 }
 
-Box box_of_both(const Box& a, const Box& b) {
-    Box both{};
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-        both.low[axis] = std::min(a.low[axis], b.low[axis]);
-        both.high[axis] = std::max(a.high[axis], b.high[axis]);
-    }
-    return both;
-}
-
 void ElementTree::Level::resize(std::size_t count) {
     const std::size_t padded = (count + kWidth - 1) / kWidth * kWidth;
     for (std::vector<float>& bound : low) bound.assign(padded, kInfinity);
@@ -124,14 +114,6 @@ void ElementTree::refit(std::span<const Element> elements, const PointArrays& po
     refit_groups(groups, workers, [&](std::uint32_t e) { return echinus::box_of(elements[e], positions); });
 }
 
-void ElementTree::refit(std::span<const Element> elements, const PointArrays& from, const PointArrays& to,
-                        const Workers& workers) {
-    const std::vector<std::uint8_t> all(group_count(), 0xFF);
-    refit_groups(all, workers, [&](std::uint32_t e) {
-        return box_of_both(echinus::box_of(elements[e], from), echinus::box_of(elements[e], to));
-    });
-}
-
 /// The boxes of elements and of their groups, piece by piece, and those of larger groups, which are few.
 template <typename BoxOf>
 void ElementTree::refit_groups(std::span<const std::uint8_t> groups, const Workers& workers,
@@ -152,44 +134,6 @@ void ElementTree::refit_groups(std::span<const std::uint8_t> groups, const Worke
         count = (count + kWidth - 1) / kWidth;
         for (std::size_t i = 0; i < count; ++i)
             levels_[level].set(i, levels_[level - 1].box_of_group(i * kWidth));
-    }
-}
-
-void ElementTree::archive(StateArchive& state) {
-    for (Level& level : levels_)
-        for (std::size_t axis = 0; axis < 3; ++axis) {
-            state.array(level.low[axis]);
-            state.array(level.high[axis]);
-        }
-}
-
-float ElementTree::distance(const Box& box, float most) const {
-    float distance_sq = most * most;
-    shorten(levels_.size() - 1, 0, box, distance_sq);
-    // Less than the rounding of a square root and of the squares.
-    return std::sqrt(distance_sq) * (1 - 1.0F / (1 << 20));
-}
-
-void ElementTree::shorten(std::size_t level, std::size_t group, const Box& box, float& distance_sq) const {
-    const Level& boxes = levels_[level];
-    const std::size_t first = group * kWidth;
-    std::array<float, kWidth> distances_sq{};
-    for (std::size_t axis = 0; axis < 3; ++axis)
-        for (std::size_t k = 0; k < kWidth; ++k) {
-            const float apart = std::max({boxes.low[axis][first + k] - box.high[axis],
-                                          box.low[axis] - boxes.high[axis][first + k], 0.0F});
-            distances_sq[k] += apart * apart;
-        }
-    if (level == 0) {
-        for (const float d : distances_sq) distance_sq = std::min(distance_sq, d);
-        return;
-    }
-    for (std::size_t step = 0; step < kWidth; ++step) {
-        const auto nearest = std::min_element(distances_sq.begin(), distances_sq.end());
-        if (!(*nearest < distance_sq)) return;
-        *nearest = kInfinity;
-        shorten(level - 1, first + static_cast<std::size_t>(nearest - distances_sq.begin()), box,
-                distance_sq);
     }
 }
 

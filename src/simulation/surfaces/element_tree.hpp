@@ -2,7 +2,6 @@
 
 #include "geometry/workers.hpp"
 #include "simulation/particles.hpp"
-#include "simulation/state/state_archive.hpp"
 #include "simulation/surfaces/elements.hpp"
 
 #include <algorithm>
@@ -27,8 +26,6 @@ struct Box {
 };
 
 Box box_of(const Element& element, const PointArrays& positions);
-/// Around both.
-Box box_of_both(const Box& a, const Box& b);
 
 /// Boxes around the elements of a surface, around groups of eight, around groups of eight groups, and so on.
 /// The groups are fixed from the start; the boxes follow the surface.
@@ -43,18 +40,7 @@ class ElementTree {
     /// To elements that have moved. @param groups  [group_count()] one bit for each that may have
     void refit(std::span<const Element> elements, const PointArrays& positions,
                std::span<const std::uint8_t> groups, const Workers& workers);
-    /// All of them, to the ways from here to there.
-    void refit(std::span<const Element> elements, const PointArrays& from, const PointArrays& to,
-               const Workers& workers);
     std::size_t group_count() const { return levels_.empty() ? 0 : levels_[0].group_count(); }
-
-    /// Calls visit(element) for each element whose box touches this one.
-    template <typename Visit>
-    void visit_touching(const Box& box, const Visit& visit) const {
-        visit_group(levels_.size() - 1, 0, box, visit);
-    }
-    /// A lower bound of the distance from the box to all elements, or `most` where it is larger.
-    float distance(const Box& box, float most) const;
 
     struct Level {
         /// [a multiple of kWidth] Of what is not there, low is infinite and high minus infinite.
@@ -64,21 +50,7 @@ class ElementTree {
         void resize(std::size_t count);
         void set(std::size_t i, const Box& box);
         Box box_of_group(std::size_t first) const;
-        unsigned touching(std::size_t first, const Box& box) const {
-            std::array<unsigned, kWidth> touch;
-            touch.fill(1);
-            for (std::size_t axis = 0; axis < 3; ++axis)
-                for (std::size_t k = 0; k < kWidth; ++k)
-                    touch[k] &= static_cast<unsigned>(low[axis][first + k] <= box.high[axis]) &
-                                static_cast<unsigned>(high[axis][first + k] >= box.low[axis]);
-            unsigned mask = 0;
-            for (std::size_t k = 0; k < kWidth; ++k) mask |= touch[k] << k;
-            return mask;
-        }
     };
-
-    /// Of the boxes.
-    void archive(StateArchive& state);
 
     /// Which of the eight boxes from `first` on are those of something, one bit each. Boxes that were read
     /// from a saved state, and infinite ones, may touch the others, too.
@@ -90,22 +62,8 @@ class ElementTree {
     std::span<const Level> levels() const { return levels_; }
 
   private:
-    template <typename Visit>
-    void visit_group(std::size_t level, std::size_t group, const Box& box, const Visit& visit) const {
-        const std::size_t first = group * kWidth;
-        unsigned mask = levels_[level].touching(first, box) & present(level, first);
-        for (unsigned k = 0; mask != 0; mask >>= 1U, ++k) {
-            if ((mask & 1U) == 0) continue;
-            if (level == 0)
-                visit(order_[first + k]);
-            else
-                visit_group(level - 1, first + k, box, visit);
-        }
-    }
     template <typename BoxOf>
     void refit_groups(std::span<const std::uint8_t> groups, const Workers& workers, const BoxOf& box_of);
-    void shorten(std::size_t level, std::size_t group, const Box& box, float& distance_sq) const;
-
     std::vector<std::uint32_t> order_; ///< the elements, group by group
     std::vector<Level> levels_;        ///< of elements, of groups of them and so on, to a single group
 };
