@@ -19,10 +19,11 @@ namespace fs = std::filesystem;
 namespace {
 
 const std::map<std::string, Records (*)(const Setting&)> kTasks{
-    {"contains", measure_contains}, {"contacts", measure_contacts}, {"bytes", measure_bytes},
-    {"build", measure_build},       {"calls", measure_calls},       {"cloth", measure_cloth},
-    {"figures", measure_figures},   {"record", measure_ratios},     {"reproduction", measure_reproduction},
-    {"solvers", measure_solvers},   {"surfaces", measure_surfaces}, {"triangles", measure_triangles},
+    {"contains", measure_contains},   {"contacts", measure_contacts}, {"bytes", measure_bytes},
+    {"build", measure_build},         {"calls", measure_calls},       {"cloth", measure_cloth},
+    {"figures", measure_figures},     {"record", measure_ratios},     {"reproduction", measure_reproduction},
+    {"mechanics", measure_mechanics}, {"solvers", measure_solvers},   {"surfaces", measure_surfaces},
+    {"triangles", measure_triangles},
 };
 
 struct Arguments {

@@ -31,6 +31,7 @@ Records measure_build(const Setting& setting);
 Records measure_cloth(const Setting& setting);
 Records measure_triangles(const Setting& setting);
 Records measure_solvers(const Setting& setting);
+Records measure_mechanics(const Setting& setting);
 Records measure_surfaces(const Setting& setting);
 Records measure_figures(const Setting& setting);
 Records measure_reproduction(const Setting& setting);

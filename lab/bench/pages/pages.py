@@ -75,16 +75,45 @@ def cloth(folder):
     return {"cloth": table(rows), "cloth machine": results.machine, "cloth commit": results.commit}
 
 
+def strain(record):
+    """Mean, 99 % and largest, in %."""
+    return " / ".join(number(record[c], 100) for c in ("strain_mean", "strain_99", "strain_largest"))
+
+
 def solvers(folder):
     results = Results(folder, "solvers")
-    values = {"solvers machine": results.machine, "solvers commit": results.commit}
-    for hangs in results.distinct("hangs"):
-        rows = [["solver", "ms a frame", "ratio", "its middle column, %", "99 % of sticks less than, %", "most, %", "residual, %"]]
-        for r in results.where(hangs=hangs):
-            rows.append([r["design"], number(r["frame_ms"]), number(r["ratio"])]
-                        + [number(r[c], 100) for c in ("column_stretch", "stretch_99", "stretch_largest", "residual")])
-        values[f"solvers {hangs}"] = table(rows)
-    return values
+    designs = ("newton", "converged", "jakobsen")
+    moving = [["a sheet", "particles", "k, N/m"] + [f"strain of {d}, %" for d in designs] + [f"{d}, ms" for d in designs]]
+    for problem in results.distinct("problem", state="moving"):
+        for one in results.where(state="moving", problem=problem, design="newton"):
+            keys = {c: one[c] for c in ("state", "problem", "side", "stiffness")}
+            found = {r["design"]: r for r in results.where(**keys)}
+            moving.append([problem, f"{one['side']} x {one['side']}", one["stiffness"]]
+                          + [strain(found[d]) if d in found else "" for d in designs]
+                          + [number(found[d]["frame_ms"]) if d in found else "" for d in designs])
+    rest = [["a sheet", "a frame, s", "strain, %", "away from that of 1/60 s, mm", "fastest particle, mm/s"]]
+    for r in results.where(state="at rest"):
+        rest.append([r["problem"], f"1/{r['frames_per_second']}", strain(r), number(r["away"], 1000), number(r["speed"], 1000)])
+    return {"solvers moving": table(moving), "solvers at rest": table(rest), "solvers machine": results.machine, "solvers commit": results.commit}
+
+
+def mechanics(folder):
+    results = Results(folder, "mechanics")
+    motion = [["a frame of", *(f"1/{p} s" for p in ("60", "120", "240")), "in theory"]]
+    for what in results.distinct("what", table="motion"):
+        found = {r["frames_per_second"]: r for r in results.where(table="motion", what=what)}
+        one = found["60"]
+        motion.append([f"{what}, {one['unit']}"] + [number(found[p]["measured"]) if p in found else "" for p in ("60", "120", "240")]
+                      + [number(one["expected"])])
+    ratios = results.distinct("poisson_ratio", table="beams")
+    beams = [["", "segments", "tetrahedra"] + [f"{r}: % of theory" for r in ratios] + ["ms a frame"]]
+    for r in results.where(table="beams", poisson_ratio=ratios[0]):
+        keys = {c: r[c] for c in ("table", "what", "segments")}
+        found = {s["poisson_ratio"]: s for s in results.where(**keys)}
+        beams.append([r["what"], r["segments"], r["tetrahedra"]]
+                     + [number(float(s["measured"]) / float(s["expected"]), 100) for s in found.values()] + [number(r["frame_ms"])])
+    return {"mechanics motion": table(motion), "mechanics beams": table(beams), "mechanics machine": results.machine,
+            "mechanics commit": results.commit}
 
 
 def triangles(folder):
@@ -97,17 +126,15 @@ def triangles(folder):
 
 def surfaces(folder):
     results = Results(folder, "surfaces")
-    rows = [["scene, contact of", "pairs with the model", "own pairs", "frames judged, of them by CGAL", "frames to rest", "strain, %", "99 %", "ever", "truncated a frame",
-             "most", "gap, mean", "least", "apart, % R"]]
+    rows = [["scene, contact of", "particles", "pairs with the model", "own pairs", "frames judged, of them by CGAL", "at rest in frame", "strain, %", "most ever, %",
+             "truncated a frame", "most", "squeezed", "least gap"]]
     times = [["scene, contact of", "particles", "ms a frame, mean", "99 %", "worst", "ratio"]]
     for r in results.records:
-        several = len(results.distinct("particles", scene=r["scene"])) > 1
-        name = f"{r['scene']}{', ' + r['particles'] + ' particles' if several else ''}: {r['method']}"
+        name = f"{r['scene']}: {r['method']}"
         rest = r["frames"] if r["rested"] == "yes" else f"not in {r['frames']}"
         judged = f"{r['judged_frames']}, {r['cgal_frames']}" + (f" ({r['judges_differ']})" if r["judges_differ"] != "0" else "")
-        rows.append([name, r["model_pairs"], r["own_pairs"], judged, rest]
-                    + [number(r[c], 100) for c in ("strain", "strain_99", "strain_ever")]
-                    + [number(r["truncated_mean"]), r["truncated_most"], number(r["gap_mean"]), number(r["gap_least"]), number(r["apart"], 100)])
+        rows.append([name, r["particles"], r["model_pairs"], r["own_pairs"], judged, rest, strain(r), number(r["strain_ever"], 100),
+                     number(r["truncated_mean"]), r["truncated_most"], r["squeezed"], number(r["gap_least"])])
         times.append([name, r["particles"]] + [number(r[c]) for c in ("frame_ms", "frame_ms_99", "frame_ms_worst", "ratio")])
     return {"surfaces": table(rows), "surfaces times": table(times), "surfaces machine": results.machine,
             "surfaces commit": results.commit}
@@ -347,6 +374,7 @@ TASKS = {
     "triangles": (["performance_tables.md"], triangles),
     "surfaces": (["surfaces_measured.md"], surfaces),
     "solvers": (["solvers.md"], solvers),
+    "mechanics": (["mechanics.md", "soft_bodies.md"], mechanics),
     "engines": (["engines.md"], engines),
     "calls": (["calls.md"], calls),
     "labels": (["labels_measured.md"], labels),

@@ -1,14 +1,21 @@
-// The task solvers: what a large cloth that hangs stretches under each solver, and how long its frame takes.
+// The task solvers: how far cloth is stretched under each solver, beside the converged solution of the same
+// mesh, and how long a frame takes; and how it hangs at rest by the length of a frame.
 
+#include "commands/strain.hpp"
 #include "compare/turns.hpp"
 #include "task.hpp"
 
+#include <echinus/exact_map.hpp>
 #include <echinus/simulation.hpp>
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdint>
+#include <numbers>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -16,127 +23,219 @@ using namespace echinus;
 
 namespace {
 
+constexpr double kFramesPerSecond = 60; // of what is measured; a solver may take several steps for one
+
+// ---- The solvers ----
+
 struct Design {
-    std::string name;
-    SimulationOptions options;
+    const char* name;
+    SolverKind solver = SolverKind::Newton;
+    double time_step = 1 / kFramesPerSecond;
+    std::uint32_t newton_steps = 0; ///< 0: the default
+    double tolerance = 0;           ///< 0: the default
 };
 
-Design newton(std::uint32_t steps) {
+constexpr Design kNewton{.name = "newton"};
+constexpr Design kConverged{.name = "converged", .newton_steps = 200, .tolerance = 1e-6};
+constexpr Design kJakobsen{.name = "jakobsen", .solver = SolverKind::Jakobsen, .time_step = 1.0 / 240};
+
+SimulationOptions options_of(const Design& design) {
     SimulationOptions options;
-    options.newton_step_count = steps;
-    return {fmt::format("newton, {} steps", steps), options};
+    options.solver = design.solver;
+    options.time_step = design.time_step;
+    if (design.newton_steps != 0) options.newton_step_count = design.newton_steps;
+    if (design.tolerance != 0) options.newton_tolerance = design.tolerance;
+    options.drag = options.air_drag = 0;
+    return options;
 }
 
-/// At the pace that it needs: four frames for one of the other.
-Design jakobsen(std::uint32_t iterations) {
-    SimulationOptions options;
-    options.solver = SolverKind::Jakobsen;
-    options.time_step = 1.0 / 240;
-    options.iteration_count = iterations;
-    return {fmt::format("jakobsen, {} relaxations", iterations), options};
+// ---- The problems: a square sheet of a metre ----
+
+struct Problem {
+    const char* name;
+    Deformable cloth;
+    std::vector<Collider> colliders{};
+};
+
+/// It lies level and swings down.
+Problem hung_by_an_edge(std::uint32_t side) {
+    ClothOptions sheet{.column_count = side, .row_count = side};
+    for (std::uint32_t column = 0; column < side; ++column) sheet.pins.push_back(column);
+    return {"hung by an edge", make_cloth(sheet)};
 }
 
-std::vector<Design> designs() {
-    return {newton(4), newton(1), newton(2), newton(8), jakobsen(10), jakobsen(40), jakobsen(160)};
-}
-
-/// A square of one unit that hangs down along y from its whole first row, or from its two corners, which
-/// stand nearer together so that it falls in folds.
-Deformable hanging(std::uint32_t side, bool by_corners) {
-    std::vector<std::uint32_t> pins;
-    for (std::uint32_t c = 0; c < side; c += by_corners ? side - 1 : 1) pins.push_back(c);
-    Deformable cloth = make_cloth({.column_count = side, .row_count = side, .pins = pins});
-    if (!by_corners) return cloth;
+/// Patches of a sixteenth of the side are held, nearer to each other than they are at rest. The sheet begins
+/// in waves, which nothing stretches.
+Problem hung_by_two_corners(std::uint32_t side) {
+    constexpr double kPatch = 1.0 / 16, kWaves = 4;
+    constexpr double kSteepest = 0.64; // radians: the waves are nine tenths as long as the sheet
+    const auto last = static_cast<double>(side - 1);
+    ClothOptions sheet{.column_count = side, .row_count = side};
+    for (std::uint32_t row = 0; row <= kPatch * last; ++row)
+        for (std::uint32_t column = 0; column < side; ++column)
+            if (std::min(column, side - 1 - column) <= kPatch * last)
+                sheet.pins.push_back(row * side + column);
+    Deformable cloth = make_cloth(sheet);
     cloth.rest_positions = cloth.positions;
-    for (Vec3f& p : cloth.positions) {
-        p.z = 0.02F * static_cast<float>(std::sin(20 * double{p.x}));
-        p.x *= 0.9F;
+    double along = 0, across = 0;
+    for (std::uint32_t column = 0; column < side; ++column) {
+        for (std::uint32_t row = 0; row < side; ++row)
+            cloth.positions[row * side + column] = Vec3f(Vec3d{along, across, -(row / last)});
+        const double angle = kSteepest * std::cos(2 * std::numbers::pi * kWaves * (column + 0.5) / last);
+        along += std::cos(angle) / last;
+        across += std::sin(angle) / last;
     }
     cloth.previous_positions = cloth.positions;
-    return cloth;
+    return {"hung by two corners", std::move(cloth)};
 }
 
-/// One cloth on its way; the last frames are timed.
+/// Off its middle, so that nothing is symmetric.
+Problem fallen_on_a_ball(std::uint32_t side) {
+    ClothOptions sheet{.column_count = side, .row_count = side};
+    sheet.pose.translation = {0.013, 0.007, 0.35};
+    return {"fallen on a ball", make_cloth(sheet), {{.map = ExactMap::build(make_sphere(0.3, 64, 32))}}};
+}
+
+constexpr std::array kProblems{hung_by_an_edge, hung_by_two_corners, fallen_on_a_ball};
+
+/// Under jakobsen only particles collide.
+Simulation simulation_of(const Problem& problem, SimulationOptions options) {
+    options.surface_collision = !problem.colliders.empty() && options.solver == SolverKind::Newton;
+    return Simulation(problem.cloth, problem.colliders, options);
+}
+
+// ---- Strain and time while it moves ----
+
+constexpr std::uint32_t kFrames = 60, kFirstMeasured = 12, kTurn = 4;
+
+/// One cloth on its way: means over the measured frames.
 class Runner {
   public:
-    Runner(const Design& design, const Deformable& cloth)
-        : simulation_(cloth, {}, with_gravity_along_rows(design.options)) {}
+    Runner(const Problem& problem, const SimulationOptions& options)
+        : simulation_(simulation_of(problem, options)) {}
 
-    /// @param frame_count  of 1/60 s each
-    void run_turn(std::uint32_t frame_count, bool is_timed) {
-        const auto steps =
-            static_cast<std::uint32_t>(std::lround(frame_count / (60 * simulation_.options().time_step)));
-        const double start = comparison::thread_seconds();
-        for (std::uint32_t i = 0; i < steps; ++i) simulation_.step();
-        if (is_timed) frame_seconds_.push_back((comparison::thread_seconds() - start) / frame_count);
+    void run_turn(std::uint32_t first_frame) {
+        const auto steps = std::lround(1 / (kFramesPerSecond * simulation_.options().time_step));
+        for (std::uint32_t frame = first_frame; frame < first_frame + kTurn; ++frame) {
+            const double start = comparison::thread_seconds();
+            for (long i = 0; i < steps; ++i) simulation_.step();
+            if (frame < kFirstMeasured) continue;
+            seconds_ += comparison::thread_seconds() - start;
+            const Strain strain = material_strain(simulation_.deformable()).value();
+            sum_.mean += strain.mean;
+            sum_.percentile_99 += strain.percentile_99;
+            sum_.largest += strain.largest;
+        }
     }
-    const Simulation& simulation() const { return simulation_; }
-    double frame_ms() const { return 1e3 * comparison::median_of(frame_seconds_); }
+    Records::Record record() const {
+        constexpr double kCount = kFrames - kFirstMeasured;
+        return {{"strain_mean", fmt::format("{:.4g}", sum_.mean / kCount)},
+                {"strain_99", fmt::format("{:.4g}", sum_.percentile_99 / kCount)},
+                {"strain_largest", fmt::format("{:.4g}", sum_.largest / kCount)},
+                {"frame_ms", fmt::format("{:.4g}", 1e3 * seconds_ / kCount)}};
+    }
 
   private:
-    static SimulationOptions with_gravity_along_rows(SimulationOptions options) {
-        options.gravity = {0, 9.81, 0};
-        return options;
-    }
-
     Simulation simulation_;
-    std::vector<double> frame_seconds_;
+    Strain sum_{};
+    double seconds_ = 0;
 };
 
-/// Of structural sticks, longer than at rest; that of the given share.
-double stretch_of(const Deformable& cloth, double share) {
-    std::vector<double> stretches;
-    for (const Stick& stick : cloth.sticks) {
-        if (stick.kind != StickKind::Structural) continue;
-        const Vec3d across = Vec3d(cloth.positions[stick.b]) - Vec3d(cloth.positions[stick.a]);
-        stretches.push_back(length(across) / double{stick.rest_length} - 1);
+struct Size {
+    std::uint32_t side;
+    std::vector<double> stiffnesses; ///< N/m
+    bool is_converged;               ///< by a solution that takes minutes where the mesh is fine
+};
+
+/// The designs take turns of a few frames, so that other load on the machine slows all alike.
+void add_moving(const Problem& problem, const Size& size, double stiffness, const Setting& setting,
+                Records& records) {
+    std::vector<Design> designs{kNewton};
+    if (stiffness == size.stiffnesses[0]) designs.push_back(kJakobsen); // for which it means nothing
+    if (size.is_converged) designs.push_back(kConverged);
+    std::vector<Runner> runners;
+    for (const Design& design : designs) {
+        SimulationOptions options = options_of(design);
+        options.material.stretch_stiffness = stiffness;
+        options.material.shear_stiffness = 0.4 * stiffness;
+        runners.emplace_back(problem, options);
     }
-    std::sort(stretches.begin(), stretches.end());
-    return stretches[static_cast<std::size_t>(share * static_cast<double>(stretches.size() - 1))];
+    for (std::uint32_t frame = 0; frame < kFrames; frame += kTurn) {
+        for (Runner& runner : runners) runner.run_turn(frame);
+        setting.report_progress(fmt::format("{}, {} a side, {} N/m", problem.name, size.side, stiffness),
+                                static_cast<double>(frame + kTurn) / kFrames);
+    }
+    for (std::size_t k = 0; k < designs.size(); ++k) {
+        Records::Record record = runners[k].record();
+        record.insert({{"state", "moving"},
+                       {"problem", problem.name},
+                       {"side", fmt::format("{}", size.side)},
+                       {"stiffness", fmt::format("{}", stiffness)},
+                       {"frames_per_second", fmt::format("{}", kFramesPerSecond)},
+                       {"design", designs[k].name}});
+        records.add(std::move(record));
+    }
 }
 
-/// How far the middle column reaches, over its length.
-double column_stretch(const Deformable& cloth, std::uint32_t side) {
+// ---- At rest ----
+
+double root_mean_square_distance(std::span<const Vec3f> a, std::span<const Vec3f> b) {
     double sum = 0;
-    for (std::uint32_t row = 1; row < side; ++row)
-        sum += double{
-            length(cloth.positions[row * side + side / 2] - cloth.positions[(row - 1) * side + side / 2])};
-    return sum - 1;
+    for (std::size_t i = 0; i < a.size(); ++i) {
+        const Vec3d way = Vec3d(a[i]) - Vec3d(b[i]);
+        sum += dot(way, way);
+    }
+    return std::sqrt(sum / static_cast<double>(a.size()));
+}
+
+/// Damped, so that it is at rest in the end, with the shape and the strain that damping does not decide.
+void add_at_rest(const Problem& problem, std::uint32_t side, const Setting& setting, Records& records) {
+    constexpr double kSeconds = 8;
+    std::vector<Vec3f> at_60;
+    for (const double pace : {60.0, 30.0, 240.0}) {
+        SimulationOptions options = options_of({.name = "", .time_step = 1 / pace});
+        options.material.damping = 0.2;
+        options.air_drag = 2;
+        Simulation simulation = simulation_of(problem, options);
+        const auto frame_count = static_cast<std::uint32_t>((setting.is_short ? 0.1 : kSeconds) * pace);
+        for (std::uint32_t i = 0; i < frame_count; ++i) {
+            simulation.step();
+            setting.report_progress(fmt::format("{}, at rest, 1/{} s", problem.name, pace),
+                                    double(i + 1) / frame_count);
+        }
+        if (at_60.empty()) at_60.assign(simulation.positions().begin(), simulation.positions().end());
+        const Strain strain = material_strain(simulation.deformable()).value();
+        records.add(
+            {{"state", "at rest"},
+             {"problem", problem.name},
+             {"side", fmt::format("{}", side)},
+             {"stiffness", fmt::format("{}", options.material.stretch_stiffness)},
+             {"frames_per_second", fmt::format("{}", pace)},
+             {"design", "newton"},
+             {"strain_mean", fmt::format("{:.4g}", strain.mean)},
+             {"strain_99", fmt::format("{:.4g}", strain.percentile_99)},
+             {"strain_largest", fmt::format("{:.4g}", strain.largest)},
+             {"away", fmt::format("{:.4g}", root_mean_square_distance(simulation.positions(), at_60))},
+             {"speed", fmt::format("{:.3g}", simulation.largest_speed())}});
+    }
 }
 
 } // namespace
 
 Records measure_solvers(const Setting& setting) {
-    Records records({"hangs", "design", "particles", "frame_ms", "ratio", "column_stretch", "stretch_99",
-                     "stretch_largest", "residual", "speed"});
-    const std::uint32_t side = setting.is_short ? 100 : 316;
-    const std::uint32_t settling = setting.is_short ? 15 : 120, turn = 2, turn_count = 10;
-    for (const bool by_corners : {false, true}) {
-        const char* const hangs = by_corners ? "by two corners" : "by an edge";
-        const Deformable cloth = hanging(side, by_corners);
-        std::vector<Design> all = designs();
-        std::vector<Runner> runners;
-        runners.reserve(all.size());
-        for (const Design& design : all) {
-            setting.report_progress(fmt::format("{} {}", hangs, design.name), 0);
-            runners.emplace_back(design, cloth).run_turn(settling, false);
+    Records records({"state", "problem", "side", "stiffness", "frames_per_second", "design", "strain_mean",
+                     "strain_99", "strain_largest", "frame_ms", "away", "speed"});
+    std::vector<Size> sizes{{33, {1000, 500, 5000}, true}, {100, {1000}, true}, {316, {1000}, false}};
+    if (setting.is_short) sizes = {{13, {1000}, true}};
+    for (const auto& problem_at : kProblems)
+        for (const Size& size : sizes) {
+            const Problem problem = problem_at(size.side);
+            for (const double stiffness : size.stiffnesses) {
+                add_moving(problem, size, stiffness, setting, records);
+                setting.store(records);
+            }
         }
-        for (std::uint32_t i = 0; i < turn_count; ++i)
-            for (Runner& runner : runners) runner.run_turn(turn, true);
-        for (std::size_t k = 0; k < all.size(); ++k) {
-            const Simulation& simulation = runners[k].simulation();
-            const Deformable& now = simulation.deformable();
-            records.add({{"hangs", hangs},
-                         {"design", all[k].name},
-                         {"particles", fmt::format("{}", now.particle_count())},
-                         {"frame_ms", fmt::format("{:.4g}", runners[k].frame_ms())},
-                         {"ratio", fmt::format("{:.3g}", runners[k].frame_ms() / runners[0].frame_ms())},
-                         {"column_stretch", fmt::format("{:.3g}", column_stretch(now, side))},
-                         {"stretch_99", fmt::format("{:.3g}", stretch_of(now, 0.99))},
-                         {"stretch_largest", fmt::format("{:.3g}", stretch_of(now, 1))},
-                         {"residual", fmt::format("{:.3g}", simulation.residual().root_mean_square)},
-                         {"speed", fmt::format("{:.3g}", simulation.largest_speed())}});
-        }
-    }
+    const std::uint32_t side = setting.is_short ? 13 : 33;
+    for (const auto& problem_at : kProblems) add_at_rest(problem_at(side), side, setting, records);
     return records;
 }

@@ -1,13 +1,15 @@
-// The task surfaces: the same cloth with contact of its particles only, of its faces with the model, and of
-// its faces with each other too. Judged exactly, on published positions.
+// The task surfaces: the same cloth with contact of its particles only, and of its faces with the model and
+// with each other. Judged exactly, on published positions.
 
-#include "cloth_run.hpp"
+#include "commands/strain.hpp"
 #include "compare/turns.hpp"
 #include "judges/intersection_judge.hpp"
 #include "task.hpp"
 
+#include <echinus/exact_map.hpp>
 #include <echinus/intersections.hpp>
 #include <echinus/mesh_io.hpp>
+#include <echinus_scene/scene.hpp>
 
 #include <fmt/format.h>
 
@@ -39,52 +41,55 @@ struct Fall {
 
 struct Method {
     const char* name;
-    bool with_model, with_itself;
+    bool of_faces; ///< with models and with each other
 };
-constexpr std::array kMethods{Method{"particles only", false, false}, Method{"with the model", true, false},
-                              Method{"with itself too", true, true}};
+constexpr std::array kMethods{Method{"particles", false}, Method{"faces", true}};
 
 // ---- The cloths ----
+
+// Frames of a run, and particles of a side.
+constexpr std::uint32_t kLimit = 750, kTurningLimit = 180, kPullingLimit = 120, kFallLimit = 63,
+                        kFineLimit = 200;
+constexpr std::uint32_t kSide = 50, kFineSide = 100;
 
 /// A scene of the repository, with the changes that a fall makes to it. Names have no commas, which records
 /// drop.
 struct SceneRun {
     std::string name;
     const char* file;
-    double speed = 0;          ///< of the cloth at the start, along gravity; units per second
-    double thickness = 0;      ///< share of the model's radius; 0: as the scene has it
-    double turn = 0;           ///< of the model about the axis that is up, degrees per second
-    std::uint32_t side = 0;    ///< particles of each side; 0: as the scene has it
-    std::uint32_t frame_limit; ///< of a model that turns, nothing comes to rest
+    double speed = 0;                   ///< of the cloth at the start, along gravity; units per second
+    double thickness = 0;               ///< share of the model's radius; 0: as the scene has it
+    double turn = 0;                    ///< of the model about the axis that is up, degrees per second
+    std::uint32_t side = kSide;         ///< particles of each side
+    std::uint32_t frame_limit = kLimit; ///< of a model that turns, nothing comes to rest
 };
-
-constexpr std::uint32_t kLimit = 750, kTurningLimit = 180, kPullingLimit = 120, kFallLimit = 63;
 
 std::vector<SceneRun> scene_runs() {
     std::vector<SceneRun> runs{
-        {.name = "horse", .file = "horse.json", .frame_limit = kLimit},
-        {.name = "torus", .file = "torus.json", .frame_limit = kLimit},
+        {.name = "horse", .file = "horse.json"},
+        {.name = "torus", .file = "torus.json"},
     };
-    for (const int speed : {5, 10, 20, 50, 100})
+    for (const int speed : {10, 100})
         runs.push_back({.name = fmt::format("horse at {} units/s", speed),
                         .file = "horse.json",
-                        .speed = double(speed),
-                        .frame_limit = kLimit});
+                        .speed = double(speed)});
     for (const double percent : {0.3, 0.05})
         runs.push_back({.name = fmt::format("horse and thickness {} % R", percent),
                         .file = "horse.json",
-                        .thickness = percent / 100,
-                        .frame_limit = kLimit});
-    runs.push_back(
-        {.name = "horse and 30 x 30 particles", .file = "horse.json", .side = 30, .frame_limit = kLimit});
+                        .thickness = percent / 100});
+    runs.push_back({.name = "horse and 30 x 30 particles", .file = "horse.json", .side = 30});
     for (const int turn : {360, 720})
         runs.push_back({.name = fmt::format("horse that turns by {} degrees/s", turn),
                         .file = "horse.json",
                         .turn = double(turn),
                         .frame_limit = kTurningLimit});
-    for (const std::uint32_t side : {30, 50, 100, 200, 316}) // pages/plots.py draws them by their name
+    for (const std::uint32_t side : {30U, 50U, 70U, kFineSide}) // pages/plots.py draws them by their name
         runs.push_back(
             {.name = "horse the fall alone", .file = "horse.json", .side = side, .frame_limit = kFallLimit});
+    runs.push_back({.name = "horse and 100 x 100 particles",
+                    .file = "horse.json",
+                    .side = kFineSide,
+                    .frame_limit = kFineLimit});
     return runs;
 }
 
@@ -100,7 +105,7 @@ Fall fall_of(const SceneRun& run, const Setting& setting) {
     else
         model = repair(read_mesh(setting.debian_horse), scene.colliders.front().repair).mesh;
     const ExactMap map = ExactMap::build(model);
-    if (run.side != 0) scene.cloth.column_count = scene.cloth.row_count = run.side;
+    scene.cloth.column_count = scene.cloth.row_count = run.side;
     if (run.thickness != 0) scene.simulation.thickness = run.thickness * double{map.view().radius};
     double speed = run.speed;
     if (setting.is_short) {
@@ -140,8 +145,8 @@ void fold_over(float& u, float& v, float height, float radius) {
 
 /// A sheet, folded in four, falls onto a box, tilted a little.
 Fall folded_fall(const Setting& setting) {
-    ClothOptions cloth{.width = 1.6, .height = 1.6};
-    if (setting.is_short) cloth.column_count = cloth.row_count = kShortSide;
+    const std::uint32_t side = setting.is_short ? kShortSide : kSide;
+    const ClothOptions cloth{.column_count = side, .row_count = side, .width = 1.6, .height = 1.6};
     const auto spacing = static_cast<float>(cloth.width / (cloth.column_count - 1));
     const float gap = 1.25F * spacing; // of the layers
     Deformable folded = make_cloth(cloth);
@@ -181,29 +186,29 @@ TriangleMesh comb() {
     return joined(teeth);
 }
 
-/// A level sheet over the middle of the model, twice as large as its bounding sphere's radius.
-Fall sheet_over(std::string name, const TriangleMesh& model, const Setting& setting) {
+/// A level sheet over the middle of a model, which is brought to a bounding sphere with a radius of a metre;
+/// the sheet is twice as large as that.
+Fall sheet_over(std::string name, TriangleMesh model, const Setting& setting) {
     Vec3f low = model.vertices[0], high = low;
     for (const Vec3f& v : model.vertices) {
         low = {std::min(low.x, v.x), std::min(low.y, v.y), std::min(low.z, v.z)};
         high = {std::max(high.x, v.x), std::max(high.y, v.y), std::max(high.z, v.z)};
     }
-    const double radius = length(Vec3d(high) - Vec3d(low)) / 2;
-    ClothOptions cloth{.width = 2 * radius, .height = 2 * radius};
-    if (setting.is_short) cloth.column_count = cloth.row_count = kShortSide;
+    const double scale = 2 / length(Vec3d(high) - Vec3d(low));
     const Vec3d middle = (Vec3d(high) + Vec3d(low)) * 0.5;
-    cloth.pose.translation = {middle.x, middle.y, double{high.z} + 0.05 * radius};
-    Fall fall = fall_onto(std::move(name), model, make_cloth(cloth), setting);
-    fall.options.gravity =
-        fall.options.gravity * radius; // as fast beside a large model as beside a small one
+    for (Vec3f& v : model.vertices) v = Vec3f((Vec3d(v) - middle) * scale);
+    const std::uint32_t side = setting.is_short ? kShortSide : kSide;
+    ClothOptions cloth{.column_count = side, .row_count = side, .width = 2, .height = 2};
+    cloth.pose.translation = {0, 0, (double{high.z} - middle.z) * scale + 0.05};
+    Fall fall = fall_onto(std::move(name), std::move(model), make_cloth(cloth), setting);
     fall.options.allow_open_colliders = true;
     return fall;
 }
 
 /// Ten sheets, one above the other.
 Fall ten_layers(const Setting& setting) {
-    ClothOptions layer{.column_count = 32, .row_count = 32, .width = 1, .height = 1};
-    if (setting.is_short) layer.column_count = layer.row_count = 10;
+    const std::uint32_t side = setting.is_short ? 10 : 16;
+    const ClothOptions layer{.column_count = side, .row_count = side};
     const auto spacing = static_cast<float>(layer.width / (layer.column_count - 1));
     const Deformable sheet = make_cloth(layer);
     std::vector<TriangleMesh> layers;
@@ -225,8 +230,8 @@ Fall bag_fall(const Setting& setting) {
 /// A ball to which the middle of a sheet is tied pulls it down through a ring, which is a third as wide as
 /// the sheet is long.
 Fall ring_pull(const Setting& setting) {
-    ClothOptions cloth{.column_count = 101, .row_count = 101, .width = 2, .height = 2};
-    if (setting.is_short) cloth.column_count = cloth.row_count = kShortSide + 1;
+    const std::uint32_t side = (setting.is_short ? kShortSide : kSide) + 1; // one is in the middle
+    ClothOptions cloth{.column_count = side, .row_count = side, .width = 2, .height = 2};
     cloth.pose.translation = {0, 0, 0.3};
     Fall fall =
         fall_onto("sheet pulled through a ring", make_torus(0.6, 0.2, 60, 24), make_cloth(cloth), setting);
@@ -267,60 +272,21 @@ TriangleMesh placed(TriangleMesh mesh, const Collider& collider) {
     return mesh;
 }
 
-/// How far a structural stick is from its rest length, as a share of it; 0 for other sticks.
-double strain_of(const Stick& stick, const Deformable& cloth) {
-    if (stick.kind != StickKind::Structural) return 0;
-    const double now = length(cloth.positions[stick.b] - cloth.positions[stick.a]);
-    return std::fabs(now / stick.rest_length - 1);
-}
-
-double largest_strain(const Deformable& cloth) {
-    double largest = 0;
-    for (const Stick& stick : cloth.sticks) largest = std::max(largest, strain_of(stick, cloth));
-    return largest;
-}
-
-/// Of the structural sticks, ascending.
-std::vector<double> strains_of(const Deformable& cloth) {
-    std::vector<double> strains;
-    for (const Stick& stick : cloth.sticks)
-        if (stick.kind == StickKind::Structural) strains.push_back(strain_of(stick, cloth));
-    std::ranges::sort(strains);
-    return strains;
-}
-
 /// @param values  ascending, not empty
 double percentile_99(const std::vector<double>& values) {
     return values[(values.size() - 1) * 99 / 100];
 }
 
-struct Gap {
-    double mean = 0, least = 0; ///< thicknesses; NaN where nothing is in contact
-};
-
-/// Of the particles outside and nearer to the model than two thicknesses.
-Gap gap_of(const Simulation& simulation) {
+/// Of the particles outside, from the model; thicknesses. NaN where none is nearer than two of them.
+double least_gap(const Simulation& simulation) {
     const double thickness = simulation.options().thickness.value();
     std::vector<Contact> contacts(simulation.positions().size());
     contacts_batch(simulation.colliders()[0], simulation.positions(), static_cast<float>(2 * thickness),
                    contacts);
-    std::vector<double> gaps;
+    double least = std::numeric_limits<double>::quiet_NaN();
     for (const Contact& contact : contacts)
-        if (contact.found() && !contact.inside) gaps.push_back(-double{contact.depth} / thickness);
-    if (gaps.empty()) return {std::nan(""), std::nan("")};
-    return {std::accumulate(gaps.begin(), gaps.end(), 0.0) / static_cast<double>(gaps.size()),
-            std::ranges::min(gaps)};
-}
-
-/// The mean distance of the particles of one cloth from the surface of another, as a share of the model's
-/// radius. Distances are those of an exact map of the other, which may be open.
-double distance_apart(const Deformable& cloth, const Deformable& other, double radius) {
-    const ExactMap map = ExactMap::build(TriangleMesh{other.positions, other.faces});
-    std::vector<float> distances(cloth.particle_count());
-    signed_distance_batch(map.view(), cloth.positions, distances);
-    double sum = 0;
-    for (const float distance : distances) sum += std::fabs(double{distance});
-    return sum / (static_cast<double>(distances.size()) * radius);
+        if (contact.found() && !contact.inside) least = std::fmin(least, -double{contact.depth} / thickness);
+    return least;
 }
 
 // ---- The runs ----
@@ -329,8 +295,7 @@ double distance_apart(const Deformable& cloth, const Deformable& other, double r
 class Runner {
   public:
     Runner(const Fall& fall, const Method& method)
-        : fall_(fall), model_stride_(method.with_model ? 1 : kCgalStride),
-          own_stride_(method.with_itself ? 1 : kCgalStride),
+        : fall_(fall), stride_(method.of_faces ? 1 : kCgalStride),
           simulation_(fall.cloth, fall.colliders, options_of(fall, method)) {}
 
     bool is_done() const { return simulation_.at_rest() || simulation_.frame() >= fall_.frame_limit; }
@@ -348,11 +313,8 @@ class Runner {
                static_cast<double>(frame_ms_.size());
     }
 
-    const Deformable& cloth() const { return simulation_.deformable(); }
-
     Records::Record record() const {
-        const std::vector<double> strains = strains_of(simulation_.deformable());
-        const Gap gap = gap_of(simulation_);
+        const Strain strain = material_strain(simulation_.deformable()).value();
         std::vector<double> times = frame_ms_;
         std::ranges::sort(times);
         const SimulationProfile& profile = simulation_.profile();
@@ -366,15 +328,14 @@ class Runner {
             {"judges_differ", fmt::format("{}", judges_differ_)},
             {"frames", fmt::format("{}", simulation_.frame())},
             {"rested", simulation_.at_rest() ? "yes" : "no"},
-            {"strain", fmt::format("{:.4g}", strains.back())},
-            {"strain_99", fmt::format("{:.4g}", percentile_99(strains))},
+            {"strain_mean", fmt::format("{:.4g}", strain.mean)},
+            {"strain_99", fmt::format("{:.4g}", strain.percentile_99)},
+            {"strain_largest", fmt::format("{:.4g}", strain.largest)},
             {"strain_ever", fmt::format("{:.4g}", strain_ever_)},
             {"truncated_mean", fmt::format("{:.4g}", double(profile.truncated_count) / simulation_.frame())},
             {"truncated_most", fmt::format("{}", truncated_most_)},
             {"squeezed", fmt::format("{}", profile.squeezed_count)},
-            {"lost", fmt::format("{}", profile.lost_count)},
-            {"gap_mean", fmt::format("{:.4g}", gap.mean)},
-            {"gap_least", fmt::format("{:.4g}", gap.least)},
+            {"gap_least", fmt::format("{:.4g}", least_gap(simulation_))},
             {"frame_ms", fmt::format("{:.4g}", mean_ms())},
             {"frame_ms_99", fmt::format("{:.4g}", percentile_99(times))},
             {"frame_ms_worst", fmt::format("{:.4g}", times.back())}};
@@ -383,9 +344,7 @@ class Runner {
   private:
     static SimulationOptions options_of(const Fall& fall, const Method& method) {
         SimulationOptions options = fall.options;
-        options.surface_collision = method.with_model;
-        options.self_collision = method.with_itself;
-        if (!method.with_model) options.solver = SolverKind::Jakobsen; // at the same step, for the comparison
+        options.surface_collision = options.self_collision = method.of_faces;
         return options;
     }
 
@@ -395,7 +354,7 @@ class Runner {
         simulation_.step();
         frame_ms_.push_back(1e3 * (comparison::thread_seconds() - start));
         truncated_most_ = std::max(truncated_most_, simulation_.profile().truncated_count - truncated_before);
-        if (is_due(model_stride_)) judge();
+        if (is_due(stride_)) judge();
     }
 
     bool is_due(std::uint32_t stride) const { return simulation_.frame() % stride == 0 || is_done(); }
@@ -412,26 +371,24 @@ class Runner {
             model_pairs += pairs.size();
         }
         model_pairs_ = std::max(model_pairs_, model_pairs);
-        if (asks_cgal || is_due(own_stride_)) {
-            const std::vector<FacePair> pairs = self_intersecting_pairs(surface);
-            if (asks_cgal) judges_differ_ += pairs != test::self_intersecting_pairs_by_cgal(surface);
-            own_pairs_ = std::max(own_pairs_, pairs.size());
-        }
-        strain_ever_ = std::max(strain_ever_, largest_strain(cloth));
+        const std::vector<FacePair> own = self_intersecting_pairs(surface);
+        if (asks_cgal) judges_differ_ += own != test::self_intersecting_pairs_by_cgal(surface);
+        own_pairs_ = std::max(own_pairs_, own.size());
+        strain_ever_ = std::max(strain_ever_, material_strain(cloth)->largest);
         ++judged_frames_;
         cgal_frames_ += asks_cgal;
     }
 
     /// Is the least gap of this frame the least so far?
     bool gap_got_less() {
-        const double gap = gap_of(simulation_).least;
+        const double gap = least_gap(simulation_);
         if (!(gap < gap_least_ever_)) return false;
         gap_least_ever_ = gap;
         return true;
     }
 
     const Fall& fall_;
-    std::uint32_t model_stride_, own_stride_; ///< of the frames that are judged
+    std::uint32_t stride_; ///< of the frames that are judged
     Simulation simulation_;
     std::vector<double> frame_ms_;
     std::size_t model_pairs_ = 0, own_pairs_ = 0; ///< of the worst frame
@@ -446,11 +403,6 @@ bool has(const Records& records, const Fall& fall) {
     return std::ranges::any_of(records.all(), [&](const Records::Record& record) {
         return record.at("scene") == fall.name && record.at("particles") == particles;
     });
-}
-
-/// Of the first model's bounding sphere.
-double radius_of(const Fall& fall) {
-    return double{std::get<ExactMap>(fall.colliders.front().map.kind).view().radius};
 }
 
 /// The methods take turns of a few frames, so that other load on the machine slows all alike.
@@ -470,8 +422,6 @@ void add_fall(const Fall& fall, const Setting& setting, Records& records) {
         Records::Record record = runners[k].record();
         record["method"] = kMethods[k].name;
         record["ratio"] = fmt::format("{:.4g}", runners[k].mean_ms() / runners[0].mean_ms());
-        record["apart"] =
-            fmt::format("{:.4g}", distance_apart(runners[k].cloth(), runners[0].cloth(), radius_of(fall)));
         records.add(std::move(record));
     }
     setting.store(records);
@@ -480,11 +430,11 @@ void add_fall(const Fall& fall, const Setting& setting, Records& records) {
 } // namespace
 
 Records measure_surfaces(const Setting& setting) {
-    Records records({"scene",         "particles",      "method",        "model_pairs",    "own_pairs",
-                     "judged_frames", "cgal_frames",    "judges_differ", "frames",         "rested",
-                     "strain",        "strain_99",      "strain_ever",   "truncated_mean", "truncated_most",
-                     "squeezed",      "lost",           "gap_mean",      "gap_least",      "frame_ms",
-                     "frame_ms_99",   "frame_ms_worst", "ratio",         "apart"});
+    Records records({"scene",          "particles",   "method",         "model_pairs", "own_pairs",
+                     "judged_frames",  "cgal_frames", "judges_differ",  "frames",      "rested",
+                     "strain_mean",    "strain_99",   "strain_largest", "strain_ever", "truncated_mean",
+                     "truncated_most", "squeezed",    "gap_least",      "frame_ms",    "frame_ms_99",
+                     "frame_ms_worst", "ratio"});
     if (setting.earlier)
         for (const Records::Record& record : setting.earlier->all()) records.add(record);
     for (const SceneRun& run : scene_runs()) add_fall(fall_of(run, setting), setting, records);
