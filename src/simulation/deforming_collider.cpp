@@ -2,8 +2,8 @@
 
 #include "collider/frame_change.hpp"
 #include "files/text.hpp"
+#include "simulation/start/validation.hpp"
 #include "simulation/surfaces/model_mesh.hpp"
-#include "simulation/validation.hpp"
 
 #include <echinus/error.hpp>
 

@@ -1,7 +1,7 @@
 #pragma once
 
+#include "simulation/particles.hpp"
 #include "simulation/state/state_archive.hpp"
-#include "simulation/surface_motion.hpp"
 
 #include <echinus/collider.hpp>
 #include <echinus/exact_map.hpp>
@@ -15,6 +15,19 @@
 #include <vector>
 
 namespace echinus {
+
+/// How the surface of a collider deforms in a frame: each of its vertices goes straight, in the body frame
+/// (the collider's frame with its scale applied), whatever the collider itself does meanwhile.
+struct SurfaceMotion {
+    PointArrays from, to; ///< [vertex_count of the model]
+    /// Where vertices are when a share of the frame is over.
+    PointArrays at(float share) const {
+        PointArrays places = to;
+        if (share == 1) return places;
+        for (std::size_t v = 0; v < places.x.size(); ++v) places.set(v, from[v] + (to[v] - from[v]) * share);
+        return places;
+    }
+};
 
 /// Shares of a triangle's corners in the point of it that is nearest to one in its plane.
 std::array<float, 3> shares_in(const std::array<Vec3f, 3>& corners, const Vec3f& point);

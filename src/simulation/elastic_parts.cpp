@@ -1,6 +1,6 @@
 #include "simulation/elastic_parts.hpp"
 
-#include "simulation/closed_pieces.hpp"
+#include "simulation/deformables/closed_pieces.hpp"
 
 #include <algorithm>
 #include <array>

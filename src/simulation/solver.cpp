@@ -1,13 +1,13 @@
 #include "simulation/solver.hpp"
 
-#include "simulation/jakobsen_solver.hpp"
+#include "simulation/jakobsen/jakobsen_solver.hpp"
 #include "simulation/newton_solver.hpp"
-#include "simulation/start_state.hpp"
+#include "simulation/start/start_state.hpp"
+#include "simulation/start/untangle.hpp"
+#include "simulation/start/validation.hpp"
 #include "simulation/surfaces/edge_lengths.hpp"
 #include "simulation/surfaces/elements.hpp"
 #include "simulation/surfaces/model_mesh.hpp"
-#include "simulation/untangle.hpp"
-#include "simulation/validation.hpp"
 
 #include <echinus/error.hpp>
 

@@ -1,11 +1,11 @@
 #pragma once
 
 #include "geometry/workers.hpp"
-#include "simulation/attachments.hpp"
 #include "simulation/bounds.hpp"
-#include "simulation/collider_motions.hpp"
 #include "simulation/deforming_collider.hpp"
-#include "simulation/handles.hpp"
+#include "simulation/motion/attachments.hpp"
+#include "simulation/motion/collider_motions.hpp"
+#include "simulation/motion/handles.hpp"
 #include "simulation/particles.hpp"
 #include "simulation/rest.hpp"
 #include "simulation/state/fingerprint.hpp"

@@ -1,6 +1,5 @@
 #include "scene/json_object.hpp"
-
-#include <echinus/error.hpp>
+#include "support/expectations.hpp"
 
 #include <gtest/gtest.h>
 
@@ -11,13 +10,7 @@ using namespace echinus;
 namespace {
 
 std::string refusal(const std::function<void()>& action) {
-    try {
-        action();
-    } catch (const Error& error) {
-        EXPECT_EQ(error.code(), ErrorCode::InvalidScene);
-        return error.what();
-    }
-    return "";
+    return test::refusal_of(ErrorCode::InvalidScene, action);
 }
 
 std::string refusal_of_text(const std::string& text) {

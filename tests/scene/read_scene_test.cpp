@@ -42,14 +42,10 @@ const char* const kMeshScene = R"({
 })";
 
 std::string refusal(const std::string& text) {
-    try {
-        parse_scene(text, "a.json");
-    } catch (const Error& error) {
-        EXPECT_EQ(error.code(), ErrorCode::InvalidScene) << error.what();
-        EXPECT_EQ(std::string(error.what()).rfind("a.json: ", 0), 0u) << error.what();
-        return error.what();
-    }
-    return "";
+    const std::string sentence =
+        test::refusal_of(ErrorCode::InvalidScene, [&] { parse_scene(text, "a.json"); });
+    EXPECT_TRUE(sentence.empty() || sentence.starts_with("a.json: ")) << sentence;
+    return sentence;
 }
 
 /// Every object of a scene, as JSON pointers.
@@ -534,19 +530,13 @@ TEST(SceneFile, ThatCannotBeReadIsRefusedByName) {
     fs::create_directories(folder);
     std::ofstream(folder / "empty.json");
     std::ofstream(folder / "huge.json") << std::string(2'000'000, ' ');
-    const auto code_of = [](const fs::path& path) {
-        try {
-            read_scene(path);
-        } catch (const Error& error) {
-            EXPECT_EQ(std::string(error.what()).rfind(path.string() + ": ", 0), 0u) << error.what();
-            return error.code();
-        }
-        return ErrorCode::Damaged;
+    const auto expect_refused = [](ErrorCode code, const fs::path& path) {
+        test::expect_error(code, path.string() + ": ", [&] { read_scene(path); });
     };
-    EXPECT_EQ(code_of(folder), ErrorCode::Unreadable);
-    EXPECT_EQ(code_of(folder / "missing.json"), ErrorCode::Unreadable);
-    EXPECT_EQ(code_of(folder / "empty.json"), ErrorCode::InvalidScene);
-    EXPECT_EQ(code_of(folder / "huge.json"), ErrorCode::InvalidScene);
+    expect_refused(ErrorCode::Unreadable, folder);
+    expect_refused(ErrorCode::Unreadable, folder / "missing.json");
+    expect_refused(ErrorCode::InvalidScene, folder / "empty.json");
+    expect_refused(ErrorCode::InvalidScene, folder / "huge.json");
     fs::remove_all(folder);
 }
 
@@ -623,13 +613,9 @@ TEST(Scene, HasSeveralCollidersEachWithItsModelAndMotion) {
     simulation.step();
     EXPECT_GT(simulation.colliders()[0].pose.translation.z, 0);
     EXPECT_EQ(simulation.colliders()[1].pose.translation.z, -3);
-    try {
-        make_simulation(scene, maps.front());
-        ADD_FAILURE();
-    } catch (const Error& error) {
-        EXPECT_EQ(std::string(error.what()),
-                  "the scene has 2 colliders, and make_simulation() got 1 maps; it takes one for each");
-    }
+    test::expect_error(ErrorCode::InvalidOptions,
+                       "the scene has 2 colliders, and make_simulation() got 1 maps; it takes one for each",
+                       [&] { make_simulation(scene, maps.front()); });
     EXPECT_EQ(refusal(R"({"model": "a", "cloth": {"size": [1, 1]}, "colliders": [{"model": "b"}]})"),
               "a.json: model is \"a\"; it must be left out where there is the key \"colliders\"");
     EXPECT_EQ(refusal(R"({"cloth": {"size": [1, 1]}, "colliders": [{"model": "b"}, {}]})"),

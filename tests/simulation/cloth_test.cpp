@@ -1,3 +1,5 @@
+#include "support/expectations.hpp"
+
 #include <echinus/error.hpp>
 #include <echinus/simulation.hpp>
 
@@ -87,19 +89,14 @@ TEST(Cloth, PinsWhatItIsToldTo) {
 }
 
 TEST(Cloth, RefusesSizesThatMakeNoSheet) {
-    const auto code_of = [](const ClothOptions& options) {
-        try {
-            make_cloth(options);
-        } catch (const Error& error) {
-            return error.code();
-        }
-        return ErrorCode::Damaged;
+    const auto expect_refused = [](const ClothOptions& options) {
+        test::expect_error(ErrorCode::InvalidOptions, "", [&] { make_cloth(options); });
     };
     constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-    EXPECT_EQ(code_of({.column_count = 1}), ErrorCode::InvalidOptions);
-    EXPECT_EQ(code_of({.row_count = 0}), ErrorCode::InvalidOptions);
-    EXPECT_EQ(code_of({.column_count = 1U << 31, .row_count = 1U << 31}), ErrorCode::InvalidOptions);
-    EXPECT_EQ(code_of({.width = 0}), ErrorCode::InvalidOptions);
-    EXPECT_EQ(code_of({.height = kNaN}), ErrorCode::InvalidOptions);
-    EXPECT_EQ(code_of({.column_count = 4, .row_count = 4, .pins = {16}}), ErrorCode::InvalidOptions);
+    expect_refused({.column_count = 1});
+    expect_refused({.row_count = 0});
+    expect_refused({.column_count = 1U << 31, .row_count = 1U << 31});
+    expect_refused({.width = 0});
+    expect_refused({.height = kNaN});
+    expect_refused({.column_count = 4, .row_count = 4, .pins = {16}});
 }

@@ -1,6 +1,6 @@
 #include "exact_map/query/stretched_contact.hpp"
-#include "simulation/contact_response.hpp"
-#include "simulation/known_contacts.hpp"
+#include "simulation/jakobsen/contact_response.hpp"
+#include "simulation/jakobsen/known_contacts.hpp"
 #include "support/random_points.hpp"
 
 #include <gtest/gtest.h>

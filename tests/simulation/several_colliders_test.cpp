@@ -85,14 +85,9 @@ TEST(CustomMapSimulation, LeavesAParticleInsideAloneThatItKnowsNoWayOutFor) {
 }
 
 TEST(CustomMapSimulation, RefusesANullPointer) {
-    try {
-        const Simulation simulation(test::sheet_at(0, 1, 5), {{.map = std::shared_ptr<const CustomMap>()}},
-                                    test::jakobsen());
-        FAIL();
-    } catch (const Error& error) {
-        EXPECT_EQ(error.code(), ErrorCode::InvalidOptions);
-        EXPECT_NE(std::string(error.what()).find("collider 0"), std::string::npos) << error.what();
-    }
+    test::expect_error(ErrorCode::InvalidOptions, "collider 0", [] {
+        Simulation(test::sheet_at(0, 1, 5), {{.map = std::shared_ptr<const CustomMap>()}}, test::jakobsen());
+    });
 }
 
 // Colliders that each move on their own, and those that are too far away to matter.

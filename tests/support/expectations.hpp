@@ -10,18 +10,30 @@
 
 namespace echinus::test {
 
-/// The call must throw an Error with this code whose sentence contains these words.
+/// The sentence of the Error that the call throws, which must have this code; empty where it throws none.
 template <typename Call>
-void expect_error(ErrorCode code, const std::string& words, Call&& call) {
+std::string refusal_of(ErrorCode code, Call&& call) {
     try {
         call();
     } catch (const Error& error) {
         EXPECT_EQ(error.code(), code) << error.what();
-        EXPECT_NE(std::string(error.what()).find(words), std::string::npos)
-            << "expected \"" << words << "\" in: " << error.what();
-        return;
+        return error.what();
     }
-    ADD_FAILURE() << "no error was thrown; expected one with \"" << words << "\"";
+    return "";
+}
+
+inline void expect_words(const std::string& sentence, const std::string& words) {
+    EXPECT_NE(sentence.find(words), std::string::npos) << "expected \"" << words << "\" in: " << sentence;
+}
+
+/// The call must throw an Error with this code whose sentence contains these words.
+template <typename Call>
+void expect_error(ErrorCode code, const std::string& words, Call&& call) {
+    const std::string sentence = refusal_of(code, call);
+    if (sentence.empty())
+        ADD_FAILURE() << "no error was thrown; expected one with \"" << words << "\"";
+    else
+        expect_words(sentence, words);
 }
 
 /// Expects the corners at the same positions in the file's frame, face by face and up to a distance, whatever

@@ -1,0 +1,104 @@
+#include "simulation/jakobsen/collisions.hpp"
+
+#include "simulation/jakobsen/contact_collision.hpp"
+#include "simulation/jakobsen/exact_collision.hpp"
+
+#include <algorithm>
+#include <variant>
+
+namespace echinus {
+
+namespace {
+
+/// A particle between colliders is rescued from one after the other, so many times.
+constexpr int kPasses = 4;
+
+/// By the kind of the collider's map. @pre the collider is valid, and the options have a thickness
+/// @param passes  [particle_count] 1 for those that the collider lets through, or none
+std::unique_ptr<Collision> make_collision(const Collider& collider, const Particles& particles,
+                                          std::span<const std::uint8_t> passes,
+                                          const SimulationOptions& options) {
+    if (std::holds_alternative<ExactMap>(collider.map.kind))
+        return std::make_unique<ExactCollision>(collider, particles, passes, options);
+    return std::make_unique<ContactCollision>(collider, particles, passes, options);
+}
+
+} // namespace
+
+Collisions::Collisions(const Deformable& deformable, const std::vector<Collider>& colliders,
+                       const Particles& particles, const SimulationOptions& options)
+    : rescues_(options.keep_free) {
+    for (std::size_t i = 0; i < colliders.size(); ++i)
+        collisions_.push_back(make_collision(colliders[i], particles, let_through(deformable, i), options));
+    unproven_.reserve(collisions_.size() * particles.count());
+}
+
+Collisions::Collisions(const Collisions& other) : rescues_(other.rescues_) {
+    for (const auto& collision : other.collisions_) collisions_.push_back(collision->clone());
+    unproven_.reserve(other.unproven_.capacity());
+}
+
+void Collisions::begin_frame(std::vector<Collider>& colliders, double seconds) {
+    for (std::size_t i = 0; i < collisions_.size(); ++i) {
+        const RigidTransform previous_pose = colliders[i].pose;
+        colliders[i].pose = pose_after(colliders[i], seconds);
+        collisions_[i]->begin_frame(colliders[i], previous_pose);
+    }
+}
+
+void Collisions::relax(Particles& particles, SimulationProfile& profile, const Workers& workers) {
+    for (const auto& collision : collisions_) collision->relax(particles, profile, workers);
+    profile.query_count += collisions_.size() * particles.count();
+}
+
+void Collisions::keep_free(Particles& particles, SimulationProfile& profile) {
+    unproven_.clear();
+    for (const auto& collision : collisions_) {
+        const auto found = collision->find_unproven(particles);
+        unproven_.insert(unproven_.end(), found.begin(), found.end());
+    }
+    for (const std::uint32_t particle : unproven_) {
+        const bool was_lost = is_lost(particle, particles);
+        if (rescues_) rescue(particle, particles);
+        if (is_lost(particle, particles))
+            profile.lost_count += mark_lost(particle, particles);
+        else if (was_lost)
+            ++profile.rescued_count;
+    }
+    for (const auto& collision : collisions_) collision->end_frame(particles);
+}
+
+void Collisions::archive(StateArchive& state, const std::vector<Collider>& colliders) {
+    for (std::size_t i = 0; i < collisions_.size(); ++i) collisions_[i]->archive(state, colliders[i]);
+}
+
+void Collisions::rescue(std::uint32_t particle, Particles& particles) const {
+    bool is_proven = false;
+    for (int pass = 0; pass < kPasses && !is_proven; ++pass) {
+        is_proven = true;
+        for (const auto& collision : collisions_) {
+            if (!collision->is_unproven(particle, particles)) continue;
+            is_proven = false;
+            collision->rescue(particle, particles);
+        }
+    }
+    if (is_proven) return;
+    for (std::size_t i = collisions_.size(); i-- > 0 && is_lost(particle, particles);)
+        collisions_[i]->take_back(particle, particles);
+}
+
+/// To any of the colliders.
+bool Collisions::is_lost(std::uint32_t particle, const Particles& particles) const {
+    return std::any_of(collisions_.begin(), collisions_.end(),
+                       [&](const auto& collision) { return collision->is_lost(particle, particles); });
+}
+
+/// @return the number of colliders to which the particle is newly lost
+std::size_t Collisions::mark_lost(std::uint32_t particle, const Particles& particles) {
+    std::size_t count = 0;
+    for (const auto& collision : collisions_)
+        if (collision->is_lost(particle, particles) && collision->mark_lost(particle)) ++count;
+    return count;
+}
+
+} // namespace echinus

@@ -1,0 +1,38 @@
+#pragma once
+
+#include "simulation/jakobsen/collision.hpp"
+
+#include <memory>
+#include <vector>
+
+namespace echinus {
+
+/// Keeps the particles off all colliders, in the order of the colliders.
+class Collisions {
+  public:
+    Collisions(const Deformable& deformable, const std::vector<Collider>& colliders,
+               const Particles& particles, const SimulationOptions& options);
+    Collisions(const Collisions& other);
+    Collisions& operator=(const Collisions&) = delete;
+
+    /// Moves the colliders on by a frame.
+    void begin_frame(std::vector<Collider>& colliders, double seconds);
+    void relax(Particles& particles, SimulationProfile& profile, const Workers& workers);
+    /// The proof at the end of a frame: rescues the particles that are not proven free, and counts those that
+    /// are lost nevertheless.
+    void keep_free(Particles& particles, SimulationProfile& profile);
+
+    /// @param colliders  where they stand
+    void archive(StateArchive& state, const std::vector<Collider>& colliders);
+
+  private:
+    void rescue(std::uint32_t particle, Particles& particles) const;
+    bool is_lost(std::uint32_t particle, const Particles& particles) const;
+    std::size_t mark_lost(std::uint32_t particle, const Particles& particles);
+
+    std::vector<std::unique_ptr<Collision>> collisions_; ///< one for each collider
+    std::vector<std::uint32_t> unproven_;                ///< in keep_free(), with room for all
+    bool rescues_;
+};
+
+} // namespace echinus

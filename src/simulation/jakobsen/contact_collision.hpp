@@ -1,0 +1,34 @@
+#pragma once
+
+#include "simulation/jakobsen/collision.hpp"
+#include "simulation/jakobsen/contact_response.hpp"
+#include "simulation/jakobsen/material_motion.hpp"
+
+#include <vector>
+
+namespace echinus {
+
+/// Collision with a distance map or a custom map: every particle is asked for its contact in every
+/// relaxation.
+class ContactCollision final : public Collision {
+  public:
+    ContactCollision(const Collider& collider, const Particles& particles,
+                     std::span<const std::uint8_t> passes, const SimulationOptions& options);
+    std::unique_ptr<Collision> clone() const override { return std::make_unique<ContactCollision>(*this); }
+
+    void begin_frame(const Collider& collider, const RigidTransform& previous_pose) override;
+    void relax(Particles& particles, SimulationProfile& profile, const Workers& workers) override;
+
+  private:
+    std::size_t relax_piece(std::size_t begin, Particles& particles);
+
+    Collider collider_;
+    MaterialMotion material_;
+    ResponseRules rules_;
+    std::vector<std::uint8_t> passes_; ///< by particle: the collider lets it through; or none
+    float reach_;                      ///< how far outside a particle still has a contact
+    std::vector<Vec3f> places_;        ///< of a piece of the particles,
+    std::vector<Contact> contacts_;    ///< and their contacts
+};
+
+} // namespace echinus

@@ -1,0 +1,73 @@
+#pragma once
+
+#include "simulation/jakobsen/collider_now.hpp"
+#include "simulation/jakobsen/collision.hpp"
+#include "simulation/jakobsen/free_places.hpp"
+#include "simulation/jakobsen/known_contacts.hpp"
+#include "simulation/jakobsen/swept_particle.hpp"
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace echinus {
+
+/// Collision with an exact map.
+///
+/// In the relaxations the map is asked for a particle's nearest point only when the particle has moved so far
+/// since the last answer that another one is possible (KnownContacts). Such particles are asked for together.
+///
+/// After the relaxations comes the proof (SweptParticle). Most particles are proven free by what is known
+/// already; the others are swept.
+class ExactCollision final : public Collision {
+  public:
+    /// Particles that are outside now are free.
+    ExactCollision(const Collider& collider, const Particles& particles, std::span<const std::uint8_t> passes,
+                   const SimulationOptions& options);
+    std::unique_ptr<Collision> clone() const override { return std::make_unique<ExactCollision>(*this); }
+
+    void begin_frame(const Collider& collider, const RigidTransform& previous_pose) override;
+    /// To the thickness over the nearest point, with friction.
+    void relax(Particles& particles, SimulationProfile& profile, const Workers& workers) override;
+
+    std::span<const std::uint32_t> find_unproven(const Particles& particles) override;
+    bool is_unproven(std::size_t i, const Particles& particles) const override;
+    bool is_lost(std::size_t i, const Particles& particles) const override;
+    void rescue(std::size_t i, Particles& particles) const override;
+    void take_back(std::size_t i, Particles& particles) const override;
+    bool mark_lost(std::size_t i) override { return free_places_.mark_lost(i); }
+    void end_frame(const Particles& particles) override;
+
+    void archive(StateArchive& state, const Collider& collider) override;
+
+  private:
+    /// Some particles that a thread relaxes.
+    struct Piece {
+        ParticleList to_ask;
+        std::uint64_t contact_count = 0, map_query_count = 0;
+    };
+
+    void relax(std::size_t first, std::size_t end, Particles& particles, Piece& piece);
+    void ask(Particles& particles, Piece& piece);
+    bool meet_on_the_way(std::size_t i, const Particles& particles, Piece& piece);
+    float reach_of(std::size_t i, const Particles& particles) const;
+    void remember(std::size_t i, const Vec3f& position, const Contact& nearest, float reach);
+    void ask_for_nearest(std::span<const std::uint32_t> asked, std::span<const Vec3f> places_local,
+                         float reach, Particles& particles, Piece& piece);
+    SweptParticle swept(std::size_t i, const Particles& particles) const {
+        return {now_, free_places_, i, particles};
+    }
+
+    SimulationOptions options_;
+    ColliderNow now_;
+    RigidTransform frame_start_pose_;
+    KnownContacts known_;
+    FreePlaces free_places_;
+    PointArrays moved_along_; ///< places at the frame's start, moved along; used while the collider moves
+    std::vector<Piece> pieces_;
+    ParticleList unproven_;
+    bool moves_ = false;
+};
+
+} // namespace echinus

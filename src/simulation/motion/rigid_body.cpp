@@ -1,0 +1,107 @@
+#include "simulation/motion/rigid_body.hpp"
+
+#include "simulation/start/validation.hpp"
+
+#include <array>
+#include <cmath>
+#include <string>
+
+namespace echinus {
+
+namespace {
+
+/// Of a solid of density 1.
+struct Solid {
+    double volume = 0;
+    Vec3d moment;       ///< the integral of the places
+    Matrix3 products{}; ///< of their outer products
+
+    void add_outer(const Vec3d& v, double weight) {
+        products[0] += v * (v.x * weight);
+        products[1] += v * (v.y * weight);
+        products[2] += v * (v.z * weight);
+    }
+    /// The tetrahedron between the origin and a face.
+    void add(const Vec3d& a, const Vec3d& b, const Vec3d& c) {
+        const double share = dot(a, cross(b, c)) / 6;
+        volume += share;
+        moment += (a + b + c) * (share / 4);
+        for (const Vec3d& v : {a + b + c, a, b, c}) add_outer(v, share / 20);
+    }
+};
+
+Matrix3 inverse(const Matrix3& m) {
+    const Vec3d x = cross(m[1], m[2]), y = cross(m[2], m[0]), z = cross(m[0], m[1]);
+    const double scale = 1 / dot(m[0], x);
+    return {Vec3d{x.x, y.x, z.x} * scale, Vec3d{x.y, y.y, z.y} * scale, Vec3d{x.z, y.z, z.z} * scale};
+}
+
+} // namespace
+
+RigidBody::RigidBody(const TriangleMesh& surface, double mass, const Collider& collider,
+                     const std::string& name)
+    : mass_(mass) {
+    require_option(mass > 0 && std::isfinite(mass),
+                   name + " has a mass of " + std::to_string(mass) + "; it must be positive and finite");
+    Solid solid;
+    const Vec3d origin(surface.vertices.front());
+    for (const Triangle& face : surface.faces)
+        solid.add(Vec3d(surface.vertices[face[0]]) - origin, Vec3d(surface.vertices[face[1]]) - origin,
+                  Vec3d(surface.vertices[face[2]]) - origin);
+    require_option(inspect(surface).closed && solid.volume != 0,
+                   name + " encloses nothing, so it has no centre of mass; a free collider has to be closed");
+    const Vec3d centre = solid.moment * (1 / solid.volume);
+    solid.add_outer(centre, -solid.volume);
+    const double density = mass / solid.volume; // negative where faces look inwards, as the integrals are
+    const double trace = solid.products[0].x + solid.products[1].y + solid.products[2].z;
+    for (std::size_t k = 0; k < 3; ++k) inertia_[k] = solid.products[k] * -density;
+    inertia_[0].x += trace * density;
+    inertia_[1].y += trace * density;
+    inertia_[2].z += trace * density;
+    centre_ = centre + origin;
+    const Rotation& rotation = collider.pose.rotation;
+    velocity_ = collider.linear_velocity + cross(collider.angular_velocity, rotation.apply(centre_));
+    angular_velocity_ = collider.angular_velocity;
+    angular_momentum_ = rotation.apply(times(inertia_, rotation.inverse().apply(collider.angular_velocity)));
+}
+
+Vec3d RigidBody::angular_velocity(const Rotation& rotation) const {
+    return rotation.apply(times(inverse(inertia_), rotation.inverse().apply(angular_momentum_)));
+}
+
+RigidTransform RigidBody::after(const RigidTransform& pose, const Load& load, const Vec3d& gravity,
+                                double seconds) {
+    const Vec3d arm = pose.rotation.apply(centre_);
+    velocity_ += (gravity + load.force * (1 / mass_)) * seconds;
+    angular_momentum_ += (load.torque - cross(arm, load.force)) * seconds;
+    angular_velocity_ = angular_velocity(pose.rotation);
+    const double speed = length(angular_velocity_);
+    RigidTransform end;
+    end.rotation = speed > 0
+                       ? (Rotation::about(angular_velocity_, speed * seconds) * pose.rotation).normalised()
+                       : pose.rotation;
+    end.translation = pose.translation + arm + velocity_ * seconds - end.rotation.apply(centre_);
+    return end;
+}
+
+bool RigidBody::is_slower_than(double speed) const {
+    return length(velocity_) <= speed && length(angular_velocity_) <= speed;
+}
+
+void RigidBody::turn(const Rotation& rotation) {
+    velocity_ = rotation.apply(velocity_);
+    angular_momentum_ = rotation.apply(angular_momentum_);
+    angular_velocity_ = rotation.apply(angular_velocity_);
+}
+
+void RigidBody::archive(StateArchive& state) {
+    state.value(mass_);
+    for (Vec3d* v : {&centre_, &inertia_[0], &inertia_[1], &inertia_[2], &velocity_, &angular_momentum_,
+                     &angular_velocity_}) {
+        state.value(*v);
+        state.require(is_finite(*v));
+    }
+    state.require(mass_ > 0);
+}
+
+} // namespace echinus

@@ -1,0 +1,144 @@
+#include "simulation/start/start_state.hpp"
+
+#include "simulation/start/model_pairs.hpp"
+#include "simulation/start/validation.hpp"
+#include "simulation/surfaces/elements.hpp"
+#include "simulation/surfaces/model_mesh.hpp"
+
+#include <echinus/error.hpp>
+#include <echinus/exact_map.hpp>
+#include <echinus/intersections.hpp>
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <utility>
+#include <variant>
+
+namespace echinus {
+
+namespace {
+
+constexpr std::size_t kNamed = 3;
+
+/// @param option  that asks for this
+/// @param pinned  untangle() moves no pinned particle
+std::string remedy(const SimulationOptions& options, const char* option, bool pinned = false) {
+    return std::string("; move the start until they are apart, ") +
+           (options.untangle || pinned ? "" : "set untangle, which does that, ") + "or switch " + option +
+           " off";
+}
+
+/// With edges and vertices as faces without area, after the faces.
+TriangleMesh surface_of(const Deformable& deformable, const Elements& elements) {
+    TriangleMesh surface{deformable.positions, {}};
+    for (const Element& element : elements.all) surface.faces.push_back(element.vertices);
+    return surface;
+}
+
+std::string name_of(const Elements& elements, std::uint32_t number) {
+    const auto& [a, b, c] = elements.all[number].vertices;
+    if (elements.all[number].is_face()) return "face " + std::to_string(number);
+    if (a == b) return "particle " + std::to_string(a);
+    return "the edge from particle " + std::to_string(a) + " to " + std::to_string(b);
+}
+
+/// @param what  it does, such as "touching the box with", before their number and `noun`
+/// @param name  of one of them
+template <typename Item, typename Name>
+[[noreturn]] void refuse(const std::string& what, const std::vector<Item>& found, const char* noun,
+                         const SimulationOptions& options, const char* option, const Name& name) {
+    std::string sentence = "the deformable begins " + what + " " + std::to_string(found.size()) + " " + noun +
+                           (found.size() == 1 ? "" : "s") +
+                           (options.untangle ? " that untangle could not part: " : ": ");
+    for (std::size_t i = 0; i < std::min(found.size(), kNamed); ++i)
+        sentence += (i == 0 ? "" : ", ") + name(found[i]);
+    if (found.size() > kNamed) sentence += ", ...";
+    throw Error(ErrorCode::InvalidOptions, sentence + remedy(options, option));
+}
+
+void require_outside(const Deformable& deformable, std::span<const std::uint8_t> passes,
+                     const Collider& collider, const SimulationOptions& options, const std::string& name) {
+    const std::vector<float>& inverse_masses = deformable.inverse_masses;
+    std::vector<std::uint8_t> inside(deformable.particle_count());
+    contains_batch(collider, std::span(deformable.positions), inside);
+    for (std::size_t v = 0; v < passes.size(); ++v)
+        if (passes[v] != 0) inside[v] = 0;
+    const auto first = std::find(inside.begin(), inside.end(), std::uint8_t{1});
+    if (first == inside.end()) return;
+    std::size_t pinned = 0;
+    for (std::size_t v = 0; v < inside.size(); ++v)
+        if (inside[v] != 0 && inverse_masses[v] == 0) ++pinned;
+    const std::string count = std::to_string(std::count(inside.begin(), inside.end(), std::uint8_t{1}));
+    throw Error(ErrorCode::InvalidOptions,
+                count + " particles begin inside " + name +
+                    (pinned > 0 ? ", " + std::to_string(pinned) + " of them pinned there" : "") +
+                    (options.untangle ? "; untangle could not move them out" : "") +
+                    "; the first is particle " + std::to_string(first - inside.begin()) +
+                    remedy(options, "surface_collision", pinned > 0));
+}
+
+void require_apart(const Deformable& deformable, const TriangleMesh& surface, const Elements& elements,
+                   std::span<const std::uint8_t> passes, const Collider& collider,
+                   const SimulationOptions& options, const std::string& name) {
+    const ModelPairs pairs(collider, {passes.begin(), passes.end()});
+    const auto [intersecting, touching] = pairs.with(surface);
+    if (!intersecting.empty())
+        refuse("intersecting " + name + " in", intersecting, "pair", options, "surface_collision",
+               [&](const FacePair& pair) {
+                   return name_of(elements, pair.a) + " and its face " + std::to_string(pair.b);
+               });
+    if (!touching.empty())
+        refuse("touching " + name + " with", touching, "face", options, "surface_collision",
+               [&](std::uint32_t face) { return name_of(elements, face); });
+    // Where nothing intersects, a piece is inside as a whole. An open surface has no inside.
+    if (pairs.has_inside())
+        require_outside(deformable, passes, with_map(collider, *map_of_surface(collider)), options, name);
+}
+
+} // namespace
+
+void require_apart(const Deformable& deformable, const std::vector<Collider>& colliders,
+                   const SimulationOptions& options) {
+    const Elements elements = elements_of(deformable);
+    const TriangleMesh surface = surface_of(deformable, elements);
+    for (std::size_t i = 0; i < colliders.size(); ++i)
+        if (map_of_surface(colliders[i]) != nullptr)
+            require_apart(deformable, surface, elements, let_through(deformable, i), colliders[i], options,
+                          name_of(colliders[i], i));
+    if (!options.self_collision) return;
+    const std::vector<FacePair> pairs = self_intersecting_pairs(surface);
+    if (!pairs.empty())
+        refuse("intersecting itself in", pairs, "pair", options, "self_collision", [&](const FacePair& pair) {
+            return name_of(elements, pair.a) + " and " + name_of(elements, pair.b);
+        });
+}
+
+void require_no_meeting(const Deformable& deformable, std::span<const Vec3f> places,
+                        std::span<const std::uint8_t> passes, const Collider& collider,
+                        const std::string& name) {
+    const ExactMap* const map = map_of_surface(collider);
+    if (map == nullptr) return;
+    TriangleMesh surface = surface_of(deformable, elements_of(deformable));
+    surface.vertices.assign(places.begin(), places.end());
+    const ModelPairs pairs(collider, {passes.begin(), passes.end()});
+    const auto [intersecting, touching] = pairs.with(surface);
+    std::size_t inside_count = 0;
+    if (pairs.has_inside()) {
+        std::vector<std::uint8_t> inside(places.size());
+        contains_batch(with_map(collider, *map), places, inside);
+        for (std::size_t v = 0; v < inside.size(); ++v)
+            if (inside[v] != 0 && (passes.empty() || passes[v] == 0)) ++inside_count;
+    }
+    const std::size_t face_count = intersecting.size() + touching.size();
+    if (face_count == 0 && inside_count == 0) return;
+    throw Error(ErrorCode::InvalidOptions,
+                "a teleport sets the deformable and " + name + " where " +
+                    (face_count > 0 ? std::to_string(face_count) + " pairs of their faces meet"
+                                    : std::to_string(inside_count) + " particles are inside") +
+                    "; set them elsewhere, or both elsewhere together");
+}
+
+} // namespace echinus

@@ -1,0 +1,46 @@
+#include "simulation/start/untangle.hpp"
+
+#include "simulation/start/part_from_models.hpp"
+#include "simulation/start/part_layers.hpp"
+#include "simulation/surfaces/edge_lengths.hpp"
+#include "simulation/surfaces/elements.hpp"
+
+#include <algorithm>
+#include <cstddef>
+
+namespace echinus {
+
+namespace {
+
+/// Layers that are parted may come into a model, and so on.
+constexpr int kMostTurns = 4;
+
+/// Of the thickness of layers, and of the mean edge: layers are parted by so much. Contact does the rest.
+constexpr float kGapInThicknesses = 0.5F;
+constexpr float kLeastGap = 1.0F / 32;
+constexpr float kMostGap = 1.0F / 8;
+
+} // namespace
+
+void untangle(Deformable& deformable, const std::vector<Collider>& colliders,
+              const SimulationOptions& options) {
+    const Elements elements = elements_of(deformable);
+    std::vector<Vec3f> positions = deformable.positions;
+    const float edge_length = mean_edge_length(elements, positions);
+    const auto thickness = static_cast<float>(options.self_thickness.value_or(*options.thickness));
+    const float gap =
+        std::clamp(kGapInThicknesses * thickness, kLeastGap * edge_length, kMostGap * edge_length);
+    for (int turn = 0; turn < kMostTurns; ++turn) {
+        const bool left_models = part_from_models(elements, deformable, colliders, options, positions);
+        const bool face_moves = turn % 2 != 0; // the other way round has led into a model
+        const bool left_itself = options.self_collision &&
+                                 part_layers(elements, deformable.inverse_masses, gap, face_moves, positions);
+        if (!left_models && !left_itself) break;
+    }
+    for (std::size_t v = 0; v < positions.size(); ++v) {
+        deformable.previous_positions[v] += positions[v] - deformable.positions[v];
+        deformable.positions[v] = positions[v];
+    }
+}
+
+} // namespace echinus
