@@ -1,7 +1,5 @@
 #include "mechanics/implicit_step.hpp"
 
-#include "geometry/union_find.hpp"
-
 #include <algorithm>
 #include <cmath>
 
@@ -21,38 +19,27 @@ constexpr double kEnergyRounding = 1e-11;
 /// Of BDF2: v = (x - from) / (2 h / 3) with from = (4 x0 - x00) / 3, and the same of the velocity.
 constexpr double kSecondOrderStep = 2.0 / 3;
 
-/// [row] the first row that the pattern connects with it.
-std::vector<std::uint32_t> bodies_of(const BlockMatrix& pattern) {
-    UnionFind bodies(pattern.blocks.row_count());
-    for (std::uint32_t row = 0; row < pattern.blocks.row_count(); ++row)
-        for (std::uint32_t e = pattern.blocks.first[row]; e < pattern.blocks.first[row + 1]; ++e)
-            bodies.join(row, pattern.blocks.columns[e]);
-    std::vector<std::uint32_t> result(pattern.blocks.row_count());
-    for (std::uint32_t row = 0; row < result.size(); ++row) result[row] = bodies.find(row);
-    return result;
-}
-
 } // namespace
 
 ImplicitStep::ImplicitStep(const ElasticParts& parts)
     : masses_(parts.masses), elastic_(parts), hessian_(elastic_.pattern()),
-      multigrid_(hessian_, parts.rest_places), inertial_(masses_.size()), inertia_(masses_.size()),
-      gradient_(masses_.size()), trial_(masses_.size()), right_side_(masses_.size()),
-      direction_(masses_.size()) {
+      multigrid_(hessian_, parts.rest_places), translations_(hessian_), inertial_(masses_.size()),
+      inertia_(masses_.size()), gradient_(masses_.size()), trial_(masses_.size()),
+      right_side_(masses_.size()), direction_(masses_.size()) {
     elastic_.find_entries(hessian_);
-    bodies_ = bodies_of(hessian_);
 }
 
 void ImplicitStep::spread(std::span<std::uint8_t> marks) const {
     // The first of a body has the smallest number.
     for (std::size_t i = 0; i < marks.size(); ++i)
-        if (marks[i] != 0) marks[bodies_[i]] = 1;
-    for (std::size_t i = 0; i < marks.size(); ++i) marks[i] = marks[bodies_[i]];
+        if (marks[i] != 0) marks[bodies()[i]] = 1;
+    for (std::size_t i = 0; i < marks.size(); ++i) marks[i] = marks[bodies()[i]];
 }
 
 void ImplicitStep::begin(const Motion& motion, std::span<const Vec3d> accelerations,
                          std::span<const std::uint8_t> is_held, double step, double drag) {
     is_held_ = is_held;
+    translations_.begin_step(is_held);
     elastic_.begin_step(motion.places, step);
     total_inertia_ = 0;
     for (std::size_t i = 0; i < masses_.size(); ++i) {
@@ -103,6 +90,13 @@ std::vector<Vec3d> ImplicitStep::missing_forces(Places places, const ContactEner
     elastic_.add_derivatives(places, forces, nullptr, workers);
     if (contacts != nullptr) contacts->add_derivatives(places, forces, nullptr, workers);
     return forces;
+}
+
+double ImplicitStep::imbalance(Places places, const ContactEnergy& contacts, const Workers& workers) const {
+    std::vector<Vec3d> forces(masses_.size());
+    for (std::size_t i = 0; i < masses_.size(); ++i) forces[i] = (places[i] - inertial_[i]) * inertia_[i];
+    contacts.add_derivatives(places, forces, nullptr, workers);
+    return translations_.imbalance(forces, inertia_);
 }
 
 /// Takes the particles that are held out of the system: their rows and columns are those of a multiple of the
@@ -156,6 +150,7 @@ StepReport ImplicitStep::solve(std::span<Vec3d> places, const ContactEnergy* con
         for (std::size_t i = 0; i < masses_.size(); ++i) right_side_[i] = Float4(-gradient_[i]);
         report.linear_iterations += linear_.solve(hessian_, multigrid_, right_side_, direction_,
                                                   budget.linear_iterations, budget.linear_tolerance, workers);
+        translations_.correct(hessian_, right_side_, direction_);
         double slope = 0;
         for (std::size_t i = 0; i < masses_.size(); ++i)
             slope += dot(gradient_[i], direction_[i].to_double());

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "mechanics/body_translations.hpp"
 #include "mechanics/conjugate_gradients.hpp"
 #include "mechanics/elastic_model.hpp"
 #include "mechanics/multigrid.hpp"
@@ -39,7 +40,7 @@ class ContactEnergy {
 struct StepBudget {
     std::uint32_t newton_steps = 2;
     std::uint32_t linear_iterations = 16; ///< at most, of each
-    double linear_tolerance = 1e-2;       ///< of the residual, relative
+    double linear_tolerance = 0.1;        ///< of the residual, relative
     double tolerance = 1e-6; ///< a Newton step that moves particles less than this is the last, in the
                              ///< root mean square that is possible by the energy it gains; length
 };
@@ -81,11 +82,14 @@ class ImplicitStep {
     /// held, and what the solver has left.
     std::vector<Vec3d> missing_forces(Places places, const ContactEnergy* contacts,
                                       const Workers& workers) const;
+    /// How far a body of which nothing is held would go to balance the forces on it, as if inertia alone kept
+    /// it; the farthest of all. Length
+    double imbalance(Places places, const ContactEnergy& contacts, const Workers& workers) const;
     /// The elastic part alone, without dissipation in progress.
     const ElasticModel& elastic() const { return elastic_; }
     std::span<const double> masses() const { return masses_; }
     /// [particle] the first one of its body: of those that the material connects.
-    std::span<const std::uint32_t> bodies() const { return bodies_; }
+    std::span<const std::uint32_t> bodies() const { return translations_.bodies(); }
     std::size_t level_count() const { return multigrid_.level_count(); }
 
   private:
@@ -95,10 +99,10 @@ class ImplicitStep {
                   StepReport& report, const Workers& workers);
 
     std::vector<double> masses_;
-    std::vector<std::uint32_t> bodies_; ///< [particle] the first one of its body
     ElasticModel elastic_;
     BlockMatrix hessian_;
     Multigrid multigrid_;
+    BodyTranslations translations_;
     ConjugateGradients linear_;
     std::span<const std::uint8_t> is_held_;
     std::vector<Vec3d> inertial_; ///< y

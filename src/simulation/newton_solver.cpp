@@ -14,6 +14,9 @@ namespace echinus {
 
 namespace {
 
+/// Share of the tolerance of particles that the displacements of whole bodies have.
+constexpr double kBodyTolerance = 1e-2;
+
 double mean_edge_of(const Deformable& deformable) {
     return double{mean_edge_length(elements_of(deformable), deformable.positions)};
 }
@@ -172,10 +175,7 @@ bool NewtonSolver::step_part(const FramePart& part) {
     choose_orders(share < 1);
     step_.begin(motion_, accelerations_, is_held_, seconds, options.air_drag);
     step_.calm(from, places, workers_);
-    // Inertia weighs more in a part of a frame, so that fewer steps lead as far.
-    const std::uint32_t newton_steps =
-        share < 1 ? (options.newton_step_count + 1) / 2 : options.newton_step_count;
-    minimise(places, start, seconds, newton_steps);
+    minimise(places, start, seconds);
     const std::vector<Vec3d> velocities_before = motion_.velocities;
     const std::vector<std::uint8_t> nothing_touches(contacts_ ? 0 : places.size());
     advance(motion_, places, contacts_ ? contacts_->touching() : nothing_touches, seconds);
@@ -251,8 +251,8 @@ std::vector<Vec3d> NewtonSolver::guess(std::span<const Vec3d> start, double seco
     return places;
 }
 
-void NewtonSolver::minimise(std::vector<Vec3d>& places, const PointArrays& start, double seconds,
-                            std::uint32_t newton_steps) {
+void NewtonSolver::minimise(std::vector<Vec3d>& places, const PointArrays& start, double seconds) {
+    const std::uint32_t newton_steps = options.newton_step_count;
     StepBudget budget;
     budget.tolerance = options.newton_tolerance * mean_edge_;
     if (!contacts_) {
@@ -277,7 +277,7 @@ void NewtonSolver::minimise(std::vector<Vec3d>& places, const PointArrays& start
         std::size_t stopped = 0;
         contact([&] { stopped = contacts_->advance(places, energy, workers_); });
         if (newton + 1 == newton_steps) profile.truncated_count += stopped;
-        if (last_move < budget.tolerance && stopped == 0) break;
+        if (last_move < budget.tolerance && stopped == 0 && are_bodies_balanced(places)) break;
     }
     contact([&] {
         contacts_->put_outside(places, energy, workers_);
@@ -288,6 +288,13 @@ void NewtonSolver::minimise(std::vector<Vec3d>& places, const PointArrays& start
     });
     profile.contact_count += contacts_->pushing_count(places);
     profile.measured_pair_count += contacts_->pair_count();
+}
+
+/// A whole body keeps what the solver leaves of the forces on it, so that has to be far less than within one.
+bool NewtonSolver::are_bodies_balanced(Places places) {
+    const Stopwatch stopwatch(profile.constraint_seconds);
+    return step_.imbalance(places, contacts_->energy(), workers_) <
+           kBodyTolerance * options.newton_tolerance * mean_edge_;
 }
 
 double NewtonSolver::fastest() const {

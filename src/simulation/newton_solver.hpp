@@ -39,8 +39,8 @@ class NewtonSolver : public Solver {
                                              bool is_least);
     std::vector<Vec3d> exact(const PointArrays& start) const;
     std::vector<Vec3d> guess(std::span<const Vec3d> start, double seconds) const;
-    void minimise(std::vector<Vec3d>& places, const PointArrays& start, double seconds,
-                  std::uint32_t newton_steps);
+    void minimise(std::vector<Vec3d>& places, const PointArrays& start, double seconds);
+    bool are_bodies_balanced(Places places);
     void publish();
     void publish_places();
 
