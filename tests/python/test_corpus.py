@@ -352,6 +352,7 @@ def workers():
     return [int(p) for p in children if b"spawn_main" in pathlib.Path(f"/proc/{p}/cmdline").read_bytes()]
 
 
+@pytest.mark.seldom
 def test_workers_may_be_killed(folder, tmp_path, reference, monkeypatch):
     """At any time: while they start, while they compute, and while they write."""
     monkeypatch.setattr(_engines, "ATTEMPTS", 100)
@@ -378,6 +379,7 @@ def test_workers_may_be_killed(folder, tmp_path, reference, monkeypatch):
 
 
 @pytest.mark.parametrize("how, seconds", [(signal.SIGKILL, 0.6), (signal.SIGKILL, 1.2), (signal.SIGINT, 1.0)])
+@pytest.mark.seldom
 def test_a_run_that_was_ended_goes_on_where_it_was(folder, tmp_path, reference, how, seconds):
     command = [sys.executable, "-m", "echinus", "label", str(folder), "-o", str(tmp_path), "--format", reference[0], "--archive-size", "4",
                "--uniform", "300", "--near", "200", "--sigmas", "0.01,0.1", "--surface", "100", "--workers", "2"]
@@ -392,6 +394,7 @@ def test_a_run_that_was_ended_goes_on_where_it_was(folder, tmp_path, reference, 
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="asks /proc")
+@pytest.mark.seldom
 def test_workers_end_with_a_run_that_is_killed(folder, tmp_path):
     command = [sys.executable, "-m", "echinus", "label", str(folder / "class_0"), "-o", str(tmp_path), "--format", "deepsdf", "--uniform", "20000000", "--workers", "1"]
     with subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL) as main:
@@ -563,6 +566,7 @@ def test_a_gltf_that_was_refused_is_tried_again_since_its_other_files_may_have_c
 
 
 @pytest.mark.parametrize("form", ["occupancy", "deepsdf"])
+@pytest.mark.seldom
 def test_a_worker_that_outlives_its_run_finishes_no_file(own_folder, tmp_path, form):
     """As those of a cluster do."""
     c = corpus_of(own_folder, tmp_path / "labels", form=form)
@@ -952,6 +956,7 @@ def test_a_run_with_nothing_to_do_says_so_only(own_folder, tmp_path, capsys):
 
 
 @pytest.mark.filterwarnings("ignore")  # Debian's Dask has deprecated ways
+@pytest.mark.seldom
 def test_a_cluster_gives_the_same_bytes(folder, tmp_path, reference):
     distributed = pytest.importorskip("distributed")
     with distributed.LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=None, scheduler_port=0) as cluster:
@@ -960,6 +965,7 @@ def test_a_cluster_gives_the_same_bytes(folder, tmp_path, reference):
 
 
 @pytest.mark.filterwarnings("ignore")
+@pytest.mark.seldom
 def test_a_cluster_that_goes_ends_the_run_with_a_sentence_and_the_next_run_goes_on(own_folder, tmp_path):
     pytest.importorskip("distributed")
     program = (
@@ -987,6 +993,7 @@ def test_a_cluster_that_goes_ends_the_run_with_a_sentence_and_the_next_run_goes_
     ("http://localhost:1", 2, "scheduler 'http://localhost:1' is no address"),
     ("tcp://127.0.0.1:1", 1, "scheduler tcp://127.0.0.1:1 does not answer"),
 ])
+@pytest.mark.seldom
 def test_a_scheduler_that_is_none_is_a_sentence_and_nothing_is_touched(folder, tmp_path, address, code, words):
     pytest.importorskip("distributed")
     command = [sys.executable, "-m", "echinus", "label", str(folder), "-o", str(tmp_path / "out"), "--scheduler", address]
