@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 namespace echinus {
 
@@ -42,8 +43,8 @@ Vec3d turned_to_local(const std::optional<FrameChange>& frame, const Vec3d& worl
 
 ContactSet::ContactSet(std::size_t particle_count, std::size_t obstacle_count, std::size_t collider_count,
                        double gravity)
-    : gravity_(gravity), obstacle_count_(obstacle_count), first_patch_(particle_count),
-      impulses_(collider_count) {}
+    : gravity_(gravity), obstacle_count_(obstacle_count), first_bristle_(particle_count + 1),
+      first_patch_(particle_count), impulses_(collider_count) {}
 
 void ContactSet::begin_frame() {
     std::fill(impulses_.begin(), impulses_.end(), Impulse{});
@@ -61,15 +62,21 @@ void ContactSet::begin_step(double step, std::span<const std::optional<FrameChan
         bristle.normal = turned_to_world(frame, bristle.normal);
         bristle.slip = turned_to_world(frame, bristle.slip);
     }
+    index_bristles();
     find_patches();
     clear();
 }
 
+void ContactSet::index_bristles() {
+    std::fill(first_bristle_.begin(), first_bristle_.end(), 0U);
+    for (const Bristle& bristle : bristles_) ++first_bristle_[bristle.key.points[0] + 1];
+    std::partial_sum(first_bristle_.begin(), first_bristle_.end(), first_bristle_.begin());
+}
+
 const ContactSet::Bristle* ContactSet::find(const ContactKey& key) const {
-    const auto found =
-        std::lower_bound(bristles_.begin(), bristles_.end(), key,
-                         [](const Bristle& a, const ContactKey& b) { return a.key.order() < b.order(); });
-    return found != bristles_.end() && found->key.order() == key.order() ? &*found : nullptr;
+    for (std::uint32_t b = first_bristle_[key.points[0]]; b < first_bristle_[key.points[0] + 1]; ++b)
+        if (bristles_[b].key.order() == key.order()) return &bristles_[b];
+    return nullptr;
 }
 
 /// The bristle that a contact goes on with: its own, or, where the nearest parts of two surfaces have become
@@ -305,7 +312,7 @@ void ContactSet::archive(StateArchive& state) {
     const std::size_t particle_count = first_patch_.size();
     for (const Bristle& bristle : bristles_)
         for (std::size_t k = 0; k < 4; ++k)
-            state.require(bristle.weights[k] == 0 || bristle.key.points[k] < particle_count);
+            state.require((k > 0 && bristle.weights[k] == 0) || bristle.key.points[k] < particle_count);
 }
 
 } // namespace echinus

@@ -24,7 +24,8 @@ struct ContactKey {
     std::uint32_t obstacle;
     PairKind kind;
     std::array<std::uint32_t, 4> points;
-    auto order() const { return std::tie(obstacle, kind, points); }
+    /// That of one particle, the first of its points, lie together.
+    auto order() const { return std::tie(points, kind, obstacle); }
 };
 
 /// The energy of contact and friction of pairs whose gap is linear in the places (docs/mechanics.md): a
@@ -110,6 +111,7 @@ class ContactSet : public ContactEnergy {
     static double push_of(const Held& contact, double gap);
     const Bristle* find(const ContactKey& key) const;
     Bristle remembered(const Contact& contact) const;
+    void index_bristles();
     void find_patches();
     Patch& patch_at(std::uint32_t particle, std::uint32_t obstacle, const Vec3d& normal);
     double gap_of(const Held& contact, Places places) const;
@@ -120,10 +122,11 @@ class ContactSet : public ContactEnergy {
     double gravity_, step_ = 0;
     std::size_t obstacle_count_;
     std::vector<Held> contacts_;
-    std::vector<Bristle> bristles_;          ///< of the step before, by key
-    std::vector<std::uint32_t> first_patch_; ///< [particle] into patches_
-    std::vector<Patch> patches_;             ///< in this step
-    std::vector<Impulse> impulses_;          ///< by collider, in this frame
+    std::vector<Bristle> bristles_;            ///< of the step before, by key
+    std::vector<std::uint32_t> first_bristle_; ///< [particle count + 1] those whose first point it is
+    std::vector<std::uint32_t> first_patch_;   ///< [particle] into patches_
+    std::vector<Patch> patches_;               ///< in this step
+    std::vector<Impulse> impulses_;            ///< by collider, in this frame
 };
 
 } // namespace echinus

@@ -27,7 +27,7 @@ inline constexpr double kSamePlane = 0.5;
 // ---- Which pairs are contacts ----
 
 /// Thicknesses: a pair this near is a contact, which begins to push as soon as a trial comes within one.
-inline constexpr float kReady = 2;
+inline constexpr float kReady = 1.5F;
 /// Share of the thickness that edges and faces of a model keep: they lie between vertices, and need less.
 inline constexpr float kSurfaceShare = 0.75F;
 /// Mean edges, and least heights of the faces and tetrahedra around: layers of one surface keep no farther
