@@ -6,6 +6,7 @@ import json
 import os
 import pathlib
 import re
+import resource
 import shutil
 import signal
 import statistics
@@ -777,10 +778,18 @@ def test_an_archive_that_a_worker_lacks_memory_for_is_a_sentence(folder, tmp_pat
         _tasks.run(corpus_of(folder, tmp_path, form="webdataset").tasks(str(tmp_path))[0])
 
 
+def address_space_of_a_worker():
+    """In bytes, before it has a task: it differs by machine, as NumPy's threads take room for each core."""
+    program = "import echinus.corpus._engines as e; print(open('/proc/self/statm').read().split()[0])"
+    pages = subprocess.run([sys.executable, "-c", program], check=True, capture_output=True, text=True).stdout
+    return int(pages) * resource.getpagesize()
+
+
 def test_a_mesh_that_needs_too_much_memory_is_refused(folder, tmp_path):
+    memory = address_space_of_a_worker() + (80 << 20)
     ech.write_mesh(tmp_path / "large.ply", ech.make_sphere(1, 2000, 101))  # 400 000 faces, which take 200 MB
     large = corpus.Corpus(corpus.find_meshes([tmp_path / "large.ply", folder / "class_0"]), tmp_path / "out", sampling=SMALL)
-    summary = corpus.label(large, workers=1, memory=160 << 20)
+    summary = corpus.label(large, workers=1, memory=memory)
     assert summary.refused == summary.again == 1 and summary.labelled == 6
     manifest = (tmp_path / "out" / "manifest.jsonl").read_text()
     assert '"again":true' in manifest and ("memory" in manifest or "died" in manifest)
