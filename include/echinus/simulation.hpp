@@ -213,7 +213,7 @@ struct SimulationOptions {
     std::uint32_t newton_step_count = 8;
     /// Newton: a step of Newton's method has converged if the energy that it gains could move particles no
     /// farther than this in the root mean square; share of the mean edge length.
-    double newton_tolerance = 1e-2;
+    double newton_tolerance = 5e-4;
     /// Newton: resistance of still air, 1/s: the rate at which a velocity decays that nothing keeps up,
     /// whatever the time step. 0 is a vacuum.
     double air_drag = 0.5;

@@ -40,7 +40,7 @@ class ContactEnergy {
 struct StepBudget {
     std::uint32_t newton_steps = 2;
     std::uint32_t linear_iterations = 16; ///< at most, of each
-    double linear_tolerance = 0.1;        ///< of the residual, relative
+    double linear_tolerance = 1e-2;       ///< of the residual, relative
     double tolerance = 1e-6; ///< a Newton step that moves particles less than this is the last, in the
                              ///< root mean square that is possible by the energy it gains; length
 };

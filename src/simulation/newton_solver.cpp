@@ -15,7 +15,7 @@ namespace echinus {
 namespace {
 
 /// Share of the tolerance of particles that the displacements of whole bodies have.
-constexpr double kBodyTolerance = 1e-2;
+constexpr double kBodyTolerance = 0.1;
 
 double mean_edge_of(const Deformable& deformable) {
     return double{mean_edge_length(elements_of(deformable), deformable.positions)};

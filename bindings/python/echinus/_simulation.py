@@ -226,7 +226,7 @@ class Simulation:
         shear_stiffness: float = 400,
         bending_stiffness: float = 1e-5,
         damping: float = 0.01,
-        newton_tolerance: float = 0.01,
+        newton_tolerance: float = 0.0005,
         air_drag: float = 0.5,
         wind: Sequence[float] = (0, 0, 0),
         wind_rate: float = 0,

@@ -658,7 +658,7 @@ export interface SceneDescription {
     thread_count?: number;
     /**
      * `newton` only: a step of Newton's method has converged if the energy that it gains could move particles no
-     * farther than this in the root mean square; share of the mean edge length (0 to 1). Default: 0.01.
+     * farther than this in the root mean square; share of the mean edge length (0 to 1). Default: 0.0005.
      */
     newton_tolerance?: number;
     /** Velocity of the air; needs `wind_rate` (-1e9 to 1e9 length/s). Default: `[0, 0, 0]`. */
