@@ -4,7 +4,6 @@
 #include "mechanics/small_matrix.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 namespace echinus {
 
@@ -59,6 +58,8 @@ void BodyTranslations::correct(const BlockMatrix& a, std::span<const Float4> b, 
         const Vec3d& rest = sums[body].residual;
         const Vec3d translation =
             Vec3d{dot(cross(rest, q), r), dot(cross(p, rest), r), dot(cross(p, q), rest)} * (1 / size);
+        // A hostile saved state may have forces that overflow: then the body stays, as in the rest of the
+        // solve.
         if (is_finite(translation)) translations[body] = Float4(translation);
     }
     for (std::size_t row = 0; row < bodies_.size(); ++row) x[row] += translations[bodies_[row]];
