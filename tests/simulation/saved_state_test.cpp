@@ -174,7 +174,7 @@ TEST(SavedState, OfHostileBytesIsRefusedOrHarmless) {
         run(kind, simulation, 12);
         const std::vector<std::byte> state = simulation.save_state();
         int refused = 0;
-        for (int i = 0; i < 60; ++i) {
+        for (int i = 0; i < 24; ++i) {
             std::vector<std::byte> changed = state;
             for (int k = 0; k < 1 << (i % 8); ++k)
                 changed[32 + random() % (state.size() - 32)] = static_cast<std::byte>(random() % 256);

@@ -182,8 +182,8 @@ inline KindOfSimulation sheet_on_a_turning_box() {
     return kind;
 }
 
-/// A sheet whose corners are led and let go, and which is set elsewhere with its ball meanwhile; a box falls
-/// on it.
+/// A sheet whose corners are led and let go, and which is set elsewhere with its ball meanwhile; a light box
+/// falls on it beside the ball.
 inline KindOfSimulation sheet_that_is_led_and_set_elsewhere() {
     KindOfSimulation kind{.name = "a sheet that is led, let go and set elsewhere",
                           .deformable = sheet_at(0.25, 0.6, 13),
@@ -191,13 +191,13 @@ inline KindOfSimulation sheet_that_is_led_and_set_elsewhere() {
                               colliders_of({make_sphere(0.15, 20, 10), make_box({0.2, 0.2, 0.2}, 2)}),
                           .options = surfaces_for_kinds(true),
                           .begin = [](Simulation& s) {
-                              s.set_collider_free(1, 2);
+                              s.set_collider_free(1, 0.2);
                               for (const double time : {0.1, 0.4})
                                   s.teleport({.motion = {Rotation::about({0, 0, 1}, 0.4), {0.1, 0, 0}},
                                               .colliders = {0},
                                               .time = time});
                           }};
-    kind.colliders[1].pose.translation = {0.2, 0, 0.45};
+    kind.colliders[1].pose.translation = {0.25, -0.2, 0.45};
     kind.colliders[1].angular_velocity = {1, 0, 2};
     kind.deformable.handles = {{{0, 1, 13}, {{0, {}}, {1, {{}, {0.3, 0, 0}}}}, 0.3},
                                {{12}, {{0, {}}, {1, {{}, {0, 0, 0.3}}}}}};
