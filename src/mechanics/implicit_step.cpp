@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace echinus {
 
@@ -90,6 +91,16 @@ std::vector<Vec3d> ImplicitStep::missing_forces(Places places, const ContactEner
     elastic_.add_derivatives(places, forces, nullptr, workers);
     if (contacts != nullptr) contacts->add_derivatives(places, forces, nullptr, workers);
     return forces;
+}
+
+std::vector<double> ImplicitStep::stiffnesses(Places places, const Workers& workers) {
+    hessian_.clear();
+    elastic_.begin_step(places, std::numeric_limits<double>::infinity()); // without damping
+    elastic_.add_derivatives(places, gradient_, &hessian_, workers);
+    std::vector<double> stiffnesses(masses_.size());
+    for (std::size_t i = 0; i < stiffnesses.size(); ++i)
+        stiffnesses[i] = double{hessian_.blocks.values[hessian_.diagonal[i]].trace()} / 3;
+    return stiffnesses;
 }
 
 double ImplicitStep::imbalance(Places places, const ContactEnergy& contacts, const Workers& workers) const {

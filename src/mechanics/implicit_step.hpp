@@ -88,6 +88,9 @@ class ImplicitStep {
     /// The elastic part alone, without dissipation in progress.
     const ElasticModel& elastic() const { return elastic_; }
     std::span<const double> masses() const { return masses_; }
+    /// [particle] the stiffness with which the material resists a displacement of it alone, in the mean of
+    /// all directions; force / length
+    std::vector<double> stiffnesses(Places places, const Workers& workers);
     /// [particle] the first one of its body: of those that the material connects.
     std::span<const std::uint32_t> bodies() const { return translations_.bodies(); }
     std::size_t level_count() const { return multigrid_.level_count(); }

@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 namespace echinus {
@@ -67,8 +68,16 @@ NewtonSolver::NewtonSolver(Deformable deformable_in, std::vector<Collider> colli
         if (!passes.empty() && all_pass) meets_some_[c] = 0;
     }
     if (options.surface_collision || !colliders.empty())
-        contacts_.emplace(deformable, colliders, step_.masses(), step_.bodies(),
+        contacts_.emplace(deformable, colliders, step_.masses(), strengths(), step_.bodies(),
                           contact_options(options, mean_edge_));
+}
+
+/// [particle] the force that strains the material around it by 1.
+std::vector<double> NewtonSolver::strengths() {
+    std::vector<double> strengths = step_.stiffnesses(motion_.places, workers_);
+    for (double& strength : strengths)
+        strength = std::max(strength * mean_edge_, std::numeric_limits<double>::min());
+    return strengths;
 }
 
 void NewtonSolver::step() {

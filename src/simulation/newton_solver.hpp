@@ -27,6 +27,7 @@ class NewtonSolver : public Solver {
     void move_particles(const RigidTransform& motion) override;
 
   private:
+    std::vector<double> strengths();
     double time_of(float share) const { return (frame + double{share}) * options.time_step; }
     void require_ways();
     void deform();

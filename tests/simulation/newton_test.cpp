@@ -147,6 +147,22 @@ TEST(Newton, FrictionHoldsOnASlopeJustBelowItsAngleAndSlidesJustAbove) {
     EXPECT_GT(crept(26.565, 0.49, 60), 0.02); // 0.044 by Coulomb's law
 }
 
+TEST(Newton, ClothBetweenPlatesThatLeaveItLittleRoomLiesStillUnderABoundedLoad) {
+    constexpr double kThickness = 0.01, kGap = 0.6 * kThickness;
+    std::vector<Collider> plates = colliders_of({make_box({1, 1, 0.1}), make_box({1, 1, 0.1})});
+    plates[1].pose.translation.z = 0.1 + kGap;
+    SimulationOptions options = newton_contact(kThickness);
+    options.friction = 0.5;
+    Simulation simulation(sheet_at(0.05 + kGap / 2, 0.8, 9), plates, options);
+    for (int i = 0; i < 60; ++i) simulation.step();
+    const double load = simulation.load_on(1).force.z;
+    for (int i = 0; i < 60; ++i) simulation.step();
+    EXPECT_NEAR(simulation.load_on(1).force.z, load, 0.01 * load);
+    const double strength = options.material.stretch_stiffness * 0.1; // strains one edge by 1
+    EXPECT_LT(load, 2 * strength * 81);
+    EXPECT_LT(simulation.largest_speed(), 1e-3);
+}
+
 TEST(Newton, ClothFallsOnABallAndBecomesSlowWithHardlyAnyStrain) {
     const TriangleMesh ball = make_sphere(0.3, 32, 16);
     SimulationOptions options = newton_contact(0.008);

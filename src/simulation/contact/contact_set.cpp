@@ -60,7 +60,7 @@ void ContactSet::begin_step(double step, std::span<const std::optional<FrameChan
     for (Bristle& bristle : bristles_) {
         const auto& frame = frames[bristle.key.obstacle];
         bristle.normal = turned_to_world(frame, bristle.normal);
-        bristle.slip = turned_to_world(frame, bristle.slip);
+        bristle.friction = turned_to_world(frame, bristle.friction);
     }
     index_bristles();
     find_patches();
@@ -93,35 +93,39 @@ ContactSet::Bristle ContactSet::remembered(const Contact& contact) const {
             if (patch.obstacle != contact.key.obstacle ||
                 turn * dot(patch.normal, contact.normal) < threshold::kSamePlane)
                 continue;
-            mean.slip += patch.slip * (turn * share);
+            mean.friction += patch.friction * (turn * share);
             mean.push += patch.push * share;
             mean.force += patch.force * share;
             weights += patch.weight * share;
         }
     }
     if (!(weights > 0)) return {};
-    mean.slip *= 1 / weights;
+    mean.friction *= 1 / weights;
     mean.push *= 1 / weights;
     mean.force *= 1 / weights;
     return mean;
 }
 
-double ContactSet::barrier_force(const Contact& contact) const {
-    return (gravity_ > 0 ? threshold::kBarrierWeights * gravity_ : contact.thickness / (step_ * step_)) /
-           contact.mobility;
+double ContactSet::barrier_force(const Contact& contact, const Bristle& before) const {
+    const double of_weight =
+        (gravity_ > 0 ? threshold::kBarrierWeights * gravity_ : contact.thickness / (step_ * step_)) /
+        contact.mobility;
+    const double of_push =
+        std::min(before.push * threshold::kBarrierOfPush, before.force * threshold::kMostBarrierGrowth);
+    return std::max(of_weight, std::min(of_push, threshold::kMostBarrierStrain / contact.yielding));
 }
 
 void ContactSet::add(const Contact& contact, const Vec3d& start, std::optional<double> gap) {
     Held held{};
     static_cast<Contact&>(held) = contact;
     const Bristle before = remembered(contact);
-    held.force = std::max(barrier_force(contact), std::min(before.push * threshold::kBarrierOfPush,
-                                                           before.force * threshold::kMostBarrierGrowth));
-    held.stiffness = threshold::kBristleStiffness / (contact.mobility * step_ * step_);
+    held.force = barrier_force(contact, before);
+    held.stiffness = std::max(threshold::kBristleStiffness / (contact.mobility * step_ * step_),
+                              contact.friction * before.push / (threshold::kMostBend * contact.thickness));
     const double push = gap ? push_of(held, *gap) : before.push;
     if (contact.friction > 0 && (push > 0 || !gap)) {
         held.most_friction = contact.friction * push;
-        held.slip_offset = before.slip - start;
+        held.slip_offset = before.friction * (1 / held.stiffness) - start;
     }
     contacts_.push_back(held);
 }
@@ -223,16 +227,15 @@ void ContactSet::end_step(Places places, std::span<const std::optional<FrameChan
         if (push > 0)
             for (std::size_t k = 0; k < 4; ++k)
                 if (contact.weights[k] != 0) is_touching[contact.particles[k]] = 1;
-        const Vec3d slip = held_slip(contact, places);
+        const Vec3d friction = held_slip(contact, places) * contact.stiffness;
         const std::uint32_t obstacle = contact.key.obstacle;
         const auto& frame = frames[obstacle];
         if (obstacle < impulses_.size())
-            add_load(obstacle, point_of(contact, places), contact.normal * push - slip * contact.stiffness,
-                     frame);
+            add_load(obstacle, point_of(contact, places), contact.normal * push - friction, frame);
         if (!(push > 0)) continue;
         Bristle bristle{
-            contact.key, {},           turned_to_local(frame, contact.normal), turned_to_local(frame, slip),
-            push,        contact.force};
+            contact.key,  {}, turned_to_local(frame, contact.normal), turned_to_local(frame, friction), push,
+            contact.force};
         for (std::size_t k = 0; k < 4; ++k) bristle.weights[k] = static_cast<float>(contact.weights[k]);
         bristles_.push_back(bristle);
     }
@@ -251,7 +254,7 @@ void ContactSet::find_patches() {
             // Of itself a pair may come either way round: seen from the particle.
             const double turn = bristle.weights[k] < 0 ? -1 : 1;
             Patch& patch = patch_at(bristle.key.points[k], bristle.key.obstacle, bristle.normal * turn);
-            patch.slip += bristle.slip * (turn * weight);
+            patch.friction += bristle.friction * (turn * weight);
             patch.push += bristle.push * weight;
             patch.force += bristle.force * weight;
             patch.weight += weight;
@@ -286,7 +289,7 @@ void ContactSet::turn(std::uint32_t obstacle, const Rotation& turn) {
     for (Bristle& bristle : bristles_)
         if (bristle.key.obstacle == obstacle) {
             bristle.normal = turn.apply(bristle.normal);
-            bristle.slip = turn.apply(bristle.slip);
+            bristle.friction = turn.apply(bristle.friction);
         }
 }
 
@@ -297,7 +300,7 @@ void ContactSet::archive(StateArchive& state) {
         state.value(bristle.key.points);
         state.value(bristle.weights);
         state.value(bristle.normal);
-        state.value(bristle.slip);
+        state.value(bristle.friction);
         state.value(bristle.push);
         state.value(bristle.force);
     });

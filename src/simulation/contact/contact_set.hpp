@@ -43,6 +43,7 @@ class ContactSet : public ContactEnergy {
         double thickness = 0;            ///< the gap from which on it pushes
         double friction = 0;             ///< Coulomb's coefficient
         double mobility = 0;             ///< of the gap: sum of weight^2 / mass
+        double yielding = 0;             ///< sum of weight^2 / the force that strains the material there by 1
     };
 
     /// @param obstacle_count  those that contacts name: colliders, then perhaps the deformable itself
@@ -88,28 +89,28 @@ class ContactSet : public ContactEnergy {
         double stiffness, most_friction = 0; ///< of the bristle
         Vec3d slip_offset;                   ///< slip = tangential part of this + sum of weights * place
     };
-    /// How far the parts of a contact have moved along each other since they began to hold.
+    /// The forces by which the parts of a contact held each other when the step before ended.
     struct Bristle {
         ContactKey key;
         std::array<float, 4> weights{};
-        Vec3d normal, slip; ///< in the obstacle's frame between steps, in the world during one
-        double push = 0;    ///< the normal force when the step ended
-        double force = 0;   ///< of the barrier
+        Vec3d normal, friction; ///< in the obstacle's frame between steps, in the world during one
+        double push = 0;        ///< the normal force when the step ended
+        double force = 0;       ///< of the barrier
     };
     static constexpr std::uint32_t kNone = 0xFFFFFFFF;
     /// The bristles around a particle that lie in about the same plane, seen from there.
     struct Patch {
         std::uint32_t obstacle, next; ///< the next one of the particle
-        Vec3d normal, slip;           ///< the slip weighted, as the push
+        Vec3d normal, friction;       ///< the friction weighted, as the push
         double push = 0, force = 0, weight = 0;
     };
     struct Impulse {
         Vec3d linear, angular; ///< the moment about where the collider stood when the frame's last step ended
     };
 
-    double barrier_force(const Contact& contact) const;
     static double push_of(const Held& contact, double gap);
     const Bristle* find(const ContactKey& key) const;
+    double barrier_force(const Contact& contact, const Bristle& before) const;
     Bristle remembered(const Contact& contact) const;
     void index_bristles();
     void find_patches();

@@ -93,7 +93,7 @@ bool ParticleContacts::came_through_a_side(const Found& found, const Vec3d& plac
 }
 
 void ParticleContacts::add_to(ContactSet& contacts, Places places, std::span<const double> masses,
-                              bool is_solved) {
+                              std::span<const double> strengths, bool is_solved) {
     if (empty()) return;
     find(places, threshold::kParticleReach * thickness_);
     for (const Found& found : found_) {
@@ -117,6 +117,7 @@ void ParticleContacts::add_to(ContactSet& contacts, Places places, std::span<con
         contact.thickness = thickness_;
         contact.friction = friction_;
         contact.mobility = 1 / masses[i];
+        contact.yielding = 1 / strengths[i];
         contacts.add(contact, carried(i, found.obstacle), is_solved ? std::optional(gap) : std::nullopt);
     }
 }

@@ -30,8 +30,9 @@ class ParticleContacts {
     /// @param is_held  [particle]
     void begin_step(const std::vector<Collider>& before, const std::vector<Collider>& after, Places start,
                     std::span<const std::uint8_t> is_held);
-    /// Adds the contacts at these places. @param is_solved  as SurfaceContacts::find_contacts()
-    void add_to(ContactSet& contacts, Places places, std::span<const double> masses, bool is_solved);
+    /// Adds the contacts at these places. @param strengths, is_solved  as SurfaceContacts::find_contacts()
+    void add_to(ContactSet& contacts, Places places, std::span<const double> masses,
+                std::span<const double> strengths, bool is_solved);
     /// Puts particles that are inside outside.
     /// @param is_put  [particle] out: 1 for those
     /// @return whether there were any

@@ -70,12 +70,12 @@ Vec3d normal_of(const PassingParts<double>& parts, double distance) {
 } // namespace
 
 SurfaceContacts::SurfaceContacts(const Deformable& deformable, const std::vector<Collider>& colliders,
-                                 std::span<const double> masses, std::span<const std::uint32_t> bodies,
-                                 const SimulationOptions& options)
+                                 std::span<const double> masses, std::span<const double> strengths,
+                                 std::span<const std::uint32_t> bodies, const SimulationOptions& options)
     : own_(std::make_shared<Elements>(elements_of(deformable))), masses_(masses.begin(), masses.end()),
-      bodies_(bodies.begin(), bodies.end()), collider_count_(colliders.size()),
-      particles_(deformable, colliders, without_faces(colliders, options), *options.thickness,
-                 options.friction),
+      strengths_(strengths.begin(), strengths.end()), bodies_(bodies.begin(), bodies.end()),
+      collider_count_(colliders.size()), particles_(deformable, colliders, without_faces(colliders, options),
+                                                    *options.thickness, options.friction),
       contacts_(own_->vertex_count(), colliders.size() + (options.self_collision ? 1 : 0), colliders.size(),
                 length(options.gravity)) {
     const float edge_length = mean_edge_length(*own_, deformable.positions);
@@ -346,7 +346,7 @@ std::size_t SurfaceContacts::advance(std::span<Vec3d> places, const StepEnergy& 
 void SurfaceContacts::find_contacts(Places goals, bool is_solved) {
     contacts_.clear();
     for (const ContactSide& side : sides_) add_contacts(side, goals, is_solved);
-    particles_.add_to(contacts_, is_solved ? Places(safe_places_) : goals, masses_, is_solved);
+    particles_.add_to(contacts_, is_solved ? Places(safe_places_) : goals, masses_, strengths_, is_solved);
 }
 
 float SurfaceContacts::thickness_of(const ContactSide& side, const Pair& pair) const {
@@ -412,7 +412,9 @@ void SurfaceContacts::add_contacts(const ContactSide& side, Places goals, bool i
             contact.particles[k] = i;
             contact.weights[k] = weight;
             contact.offset -= weight * dot(contact.normal, safe_places_[i]);
-            if (is_held_[i] == 0) contact.mobility += weight * weight / masses_[i];
+            if (is_held_[i] != 0) continue;
+            contact.mobility += weight * weight / masses_[i];
+            contact.yielding += weight * weight / strengths_[i];
         }
         if (!(gap + std::min(dot(normal, ahead), 0.0) < double{threshold::kReady} * thickness) ||
             !(contact.mobility > 0))

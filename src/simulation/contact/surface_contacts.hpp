@@ -27,11 +27,12 @@ namespace echinus {
 class SurfaceContacts {
   public:
     /// @param masses  [particle]; infinite or of any size where a particle is held
+    /// @param strengths  [particle] the force that strains the material around it by 1
     /// @param bodies  [particle] the first one of its body
     /// @param options  with a positive thickness
     SurfaceContacts(const Deformable& deformable, const std::vector<Collider>& colliders,
-                    std::span<const double> masses, std::span<const std::uint32_t> bodies,
-                    const SimulationOptions& options);
+                    std::span<const double> masses, std::span<const double> strengths,
+                    std::span<const std::uint32_t> bodies, const SimulationOptions& options);
 
     /// Begins a frame of one step or more, whose loads are summed.
     void begin_frame();
@@ -116,7 +117,7 @@ class SurfaceContacts {
     float thickness_of(const ContactSide& side, const Pair& pair) const;
 
     std::shared_ptr<const Elements> own_;
-    std::vector<double> masses_;
+    std::vector<double> masses_, strengths_;
     std::vector<std::uint32_t> bodies_; ///< [particle]
     std::size_t collider_count_;
     std::vector<ContactSide> sides_; ///< of the colliders, then of itself

@@ -15,12 +15,18 @@ inline constexpr double kBarrierWeights = 5;
 /// that carries much is 0.4 of the thickness wide, too. And by what it may grow in a step: more lifts what is
 /// suddenly loaded faster than is quiet.
 inline constexpr double kBarrierOfPush = 0.5, kMostBarrierGrowth = 1.5;
+/// Strain of the material that the scale of such a barrier would cause, at most: between two plates that
+/// leave too little room push and barrier would otherwise raise each other without bound.
+inline constexpr double kMostBarrierStrain = 0.1;
 /// Share of the thickness from which on the barrier goes on as a parabola. Less holds harder impacts within
 /// Newton's step, and makes its linear systems worse conditioned.
 inline constexpr double kLeastBarrierShare = 1.0 / 16;
 /// Stiffness of a bristle over mass / h^2, the resistance of inertia in a step. More gives way less before it
 /// holds (mu g h^2 / this), and slows Newton's method down: with 100 it does not converge in four steps.
 inline constexpr double kBristleStiffness = 10;
+/// Thicknesses: so far a bristle bends, at most, before it slips under the load of the step before. More
+/// lets a heavy body move before friction holds it.
+inline constexpr double kMostBend = 0.1;
 /// Cosine between the normals of two contacts that may go on with each other's bristles.
 inline constexpr double kSamePlane = 0.5;
 
