@@ -48,7 +48,7 @@ struct Method {
 // ---- The cloths ----
 
 // Frames of a run, and particles of a side.
-constexpr std::uint32_t kLimit = 480, kTurningLimit = 180, kPullingLimit = 120, kFallLimit = 63,
+constexpr std::uint32_t kLimit = 1500, kTurningLimit = 180, kPullingLimit = 120, kFallLimit = 63,
                         kFineLimit = 200;
 constexpr std::uint32_t kSide = 50, kFineSide = 100;
 
