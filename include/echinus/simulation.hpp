@@ -346,7 +346,8 @@ class Simulation {
     /// energy is minimised, and no step towards the minimum is longer than what keeps faces apart: no face
     /// meets a collider, or another face with options.self_collision, when a frame ends. docs/surfaces.md has
     /// the limits, most of which squeezed_count counts where they were met. A frame in which a collider
-    /// moves far is divided into up to 32 steps.
+    /// moves far is divided into up to 32 steps. Memory is kept from frame to frame: a frame that needs no
+    /// more than those before allocates nothing, but where maps of colliders that deform are built.
     ///
     /// Jakobsen: Verlet integration with drag, colliders that move on, then iteration_count times all sticks
     /// and collision of all particles with all colliders; at last the proof that no particle passed through
@@ -467,8 +468,7 @@ class Simulation {
 
     /// Wind for the time of one frame: of the velocity with which air moves across a face, along its normal,
     /// particles take on the share rate * time_step, each as the mean over the faces around it. Air slips
-    /// along faces. Call before each frame, in which it takes the place of the options' wind; allocates the
-    /// first time.
+    /// along faces. Call before each frame, in which it takes the place of the options' wind.
     /// @param wind  of the air, units per second; 0 is air at rest, which brakes
     /// @param rate  per second: the higher, the lighter the cloth. Not negative
     /// @pre both are finite

@@ -126,7 +126,8 @@ struct Workers::Team {
     alignas(64) std::atomic<std::size_t> done = 0;
 };
 
-Workers::Workers(unsigned thread_count) : count_(worker_count(thread_count)) {
+Workers::Workers(unsigned thread_count)
+    : count_(worker_count(thread_count)), scratch_(std::make_unique<Scratch[]>(count_)) {
     if (count_ > 1) team_ = std::make_unique<Team>(static_cast<int>(count_));
 }
 
@@ -163,7 +164,7 @@ void Workers::run(std::size_t piece_count, const Body& body) const {
 
 struct Workers::Team {};
 
-Workers::Workers(unsigned) : count_(1) {}
+Workers::Workers(unsigned) : count_(1), scratch_(std::make_unique<Scratch[]>(count_)) {}
 void Workers::begin_session() const {}
 void Workers::end_session() const noexcept {}
 void Workers::offer(std::function<void()>) const {}

@@ -1,5 +1,7 @@
 #pragma once
 
+#include "geometry/scratch.hpp"
+
 #include <cstddef>
 #include <functional>
 #include <memory>
@@ -25,6 +27,8 @@ class Workers {
     ~Workers();
 
     std::size_t count() const { return count_; }
+    /// Of a worker, for the piece that it has taken; the first one's is for the caller between loops, too.
+    Scratch& scratch(std::size_t worker = 0) const { return scratch_[worker]; }
 
     /// While it lives, loops are shared. One at a time.
     class Session {
@@ -76,7 +80,8 @@ class Workers {
     void run(std::size_t piece_count, const std::function<void(std::size_t, std::size_t)>& body) const;
 
     std::size_t count_;
-    std::unique_ptr<Team> team_; ///< none for a single worker
+    std::unique_ptr<Scratch[]> scratch_; ///< [worker]
+    std::unique_ptr<Team> team_;         ///< none for a single worker
 };
 
 /// What the pieces of a parallel loop append to one list, in the order of the pieces.

@@ -76,14 +76,19 @@ std::uint32_t BlockMatrix::find_multiple(std::uint32_t row, std::uint32_t column
     return find(multiples, row, column);
 }
 
-void BlockMatrix::set_contacts(std::vector<ContactEntry> entries) {
-    std::stable_sort(entries.begin(), entries.end(),
-                     [](const ContactEntry& a, const ContactEntry& b) { return a.at < b.at; });
+void BlockMatrix::set_contacts() {
+    contact_order_.resize(added_contacts_.size());
+    std::iota(contact_order_.begin(), contact_order_.end(), 0U);
+    std::sort(contact_order_.begin(), contact_order_.end(), [&](std::uint32_t a, std::uint32_t b) {
+        const Coupling &at_a = added_contacts_[a].at, &at_b = added_contacts_[b].at;
+        return at_a != at_b ? at_a < at_b : a < b;
+    });
     contacts.first.assign(row_count() + 1, 0);
     contacts.columns.clear();
     contacts.values.clear();
     const Coupling* previous = nullptr;
-    for (const ContactEntry& entry : entries) {
+    for (const std::uint32_t number : contact_order_) {
+        const AddedContact& entry = added_contacts_[number];
         if (previous != nullptr && *previous == entry.at) {
             contacts.values.back() += entry.value;
         } else {
@@ -99,7 +104,8 @@ void BlockMatrix::set_contacts(std::vector<ContactEntry> entries) {
 void BlockMatrix::clear() {
     std::fill(blocks.values.begin(), blocks.values.end(), Block{});
     std::fill(multiples.values.begin(), multiples.values.end(), 0.0F);
-    set_contacts({});
+    added_contacts_.clear();
+    set_contacts();
 }
 
 void BlockMatrix::invert_diagonal(const Workers& workers) {

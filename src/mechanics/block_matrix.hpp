@@ -48,13 +48,10 @@ class BlockMatrix {
     std::uint32_t find_multiple(std::uint32_t row, std::uint32_t column) const;
     static constexpr std::uint32_t kNone = UINT32_MAX;
 
-    /// A block where contacts couple a row and a column.
-    struct ContactEntry {
-        Coupling at;
-        Block value;
-    };
-    /// Sets the contacts; entries of one place are summed in their order. None is on the diagonal.
-    void set_contacts(std::vector<ContactEntry> entries);
+    /// Adds a block where contacts couple a row and a column beside the pattern; not on the diagonal.
+    void add_contact(const Coupling& at, const Block& value) { added_contacts_.push_back({at, value}); }
+    /// Sets `contacts` to what was added since clear(): blocks of one place are summed in their order.
+    void set_contacts();
 
     /// All values to 0, no contacts.
     void clear();
@@ -74,6 +71,14 @@ class BlockMatrix {
     }
     /// result = A x
     void multiply(std::span<const Float4> x, std::span<Float4> result, const Workers& workers) const;
+
+  private:
+    struct AddedContact {
+        Coupling at;
+        Block value;
+    };
+    std::vector<AddedContact> added_contacts_;
+    std::vector<std::uint32_t> contact_order_;
 };
 
 /// Rows of a loop over rows that one thread takes at once: fixed, so that the threads decide no bits.

@@ -24,12 +24,13 @@ void BodyTranslations::begin_step(std::span<const std::uint8_t> is_held) {
         if (is_held[row] != 0) is_bound_[bodies_[row]] = 1;
 }
 
-void BodyTranslations::correct(const BlockMatrix& a, std::span<const Float4> b, std::span<Float4> x) const {
+void BodyTranslations::correct(const BlockMatrix& a, std::span<const Float4> b, std::span<Float4> x,
+                               const Workers& workers) const {
     struct Body {
         Matrix3 matrix;
         Vec3d residual;
     };
-    std::vector<Body> sums(bodies_.size());
+    ScratchVector<Body> sums(bodies_.size(), workers.scratch());
     const auto add = [&](Body& sum, const Block& block) {
         for (std::size_t i = 0; i < 3; ++i) sum.matrix[i] += block.columns[i].to_double();
     };
@@ -49,7 +50,7 @@ void BodyTranslations::correct(const BlockMatrix& a, std::span<const Float4> b, 
         of_row.add_identity(multiple);
         add(sum, of_row);
     }
-    std::vector<Float4> translations(bodies_.size());
+    ScratchVector<Float4> translations(bodies_.size(), workers.scratch());
     for (std::size_t body = 0; body < bodies_.size(); ++body) {
         if (bodies_[body] != body || !is_free(body)) continue;
         const auto& [p, q, r] = sums[body].matrix;
@@ -65,9 +66,10 @@ void BodyTranslations::correct(const BlockMatrix& a, std::span<const Float4> b, 
     for (std::size_t row = 0; row < bodies_.size(); ++row) x[row] += translations[bodies_[row]];
 }
 
-double BodyTranslations::imbalance(Places forces, std::span<const double> inertia) const {
-    std::vector<Vec3d> sums(bodies_.size());
-    std::vector<double> inertias(bodies_.size());
+double BodyTranslations::imbalance(Places forces, std::span<const double> inertia,
+                                   const Workers& workers) const {
+    ScratchVector<Vec3d> sums(bodies_.size(), workers.scratch());
+    ScratchVector<double> inertias(bodies_.size(), workers.scratch());
     for (std::size_t row = 0; row < bodies_.size(); ++row) {
         if (!is_free(row)) continue;
         sums[bodies_[row]] += forces[row];

@@ -22,11 +22,12 @@ class BodyTranslations {
     std::span<const std::uint32_t> bodies() const { return bodies_; }
     void begin_step(std::span<const std::uint8_t> is_held);
     /// Adds to each free body the translation after which the residual b - A x of all its rows together is 0.
-    void correct(const BlockMatrix& a, std::span<const Float4> b, std::span<Float4> x) const;
+    void correct(const BlockMatrix& a, std::span<const Float4> b, std::span<Float4> x,
+                 const Workers& workers) const;
     /// How far a free body would go to be in balance, as if inertia alone kept it; the farthest of all.
     /// @param forces   [row] that do not balance; those within a body need not be among them
     /// @param inertia  [row]
-    double imbalance(Places forces, std::span<const double> inertia) const;
+    double imbalance(Places forces, std::span<const double> inertia, const Workers& workers) const;
 
   private:
     bool is_free(std::size_t row) const { return is_bound_[bodies_[row]] == 0; }

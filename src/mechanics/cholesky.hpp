@@ -13,9 +13,9 @@ class Cholesky {
   public:
     /// @param matrix  [size * size] of which the lower triangle by rows is read. A pivot that rounding has
     /// left not positive counts as that of a row of its own, decoupled from the others.
-    void factorise(std::size_t size, std::vector<T> matrix) {
+    void factorise(std::size_t size, std::span<const T> matrix) {
         size_ = size;
-        factor_ = std::move(matrix);
+        factor_.assign(matrix.begin(), matrix.end());
         for (std::size_t i = 0; i < size_; ++i) {
             T* const row = factor_.data() + i * size_;
             const T original = row[i];

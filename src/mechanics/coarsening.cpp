@@ -83,7 +83,7 @@ std::vector<double> weights_at(const Vec3d& place, std::span<const Parent> paren
     }
     for (std::size_t i = 1; i < kTerms; ++i) normal_matrix[i * kTerms + i] += kFlatness;
     Cholesky<double> normal;
-    normal.factorise(kTerms, std::move(normal_matrix));
+    normal.factorise(kTerms, normal_matrix);
     std::array<double, kTerms> at_node{1, 0, 0, 0};
     normal.solve(at_node);
     std::vector<double> weights;

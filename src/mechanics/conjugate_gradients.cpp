@@ -10,7 +10,7 @@ namespace {
 /// In double, by pieces that are summed in their order.
 double dot(std::span<const Float4> a, std::span<const Float4> b, const Workers& workers) {
     constexpr std::size_t kLanes = 64;
-    std::vector<double> sums(Workers::piece_count(a.size(), kRowsPerPiece));
+    ScratchVector<double> sums(Workers::piece_count(a.size(), kRowsPerPiece), workers.scratch());
     workers.for_ranges(a.size(), kRowsPerPiece,
                        [&](std::size_t, std::size_t piece, std::size_t begin, std::size_t end) {
                            double sum = 0;

@@ -57,7 +57,7 @@ class SlabLists {
 template <typename Term>
 double sum_of(std::size_t count, const Workers& workers, const Term& term) {
     constexpr std::size_t kPerPiece = 2048;
-    std::vector<double> sums(Workers::piece_count(count, kPerPiece));
+    ScratchVector<double> sums(Workers::piece_count(count, kPerPiece), workers.scratch());
     workers.for_ranges(count, kPerPiece,
                        [&](std::size_t, std::size_t piece, std::size_t begin, std::size_t end) {
                            double sum = 0;

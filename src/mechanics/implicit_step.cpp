@@ -84,9 +84,9 @@ void ImplicitStep::add_derivatives(Places places, const ContactEnergy* contacts,
     hold(workers);
 }
 
-std::vector<Vec3d> ImplicitStep::missing_forces(Places places, const ContactEnergy* contacts,
-                                                const Workers& workers) const {
-    std::vector<Vec3d> forces(masses_.size());
+ScratchVector<Vec3d> ImplicitStep::missing_forces(Places places, const ContactEnergy* contacts,
+                                                  const Workers& workers) const {
+    ScratchVector<Vec3d> forces(masses_.size(), workers.scratch());
     for (std::size_t i = 0; i < masses_.size(); ++i) forces[i] = (places[i] - inertial_[i]) * inertia_[i];
     elastic_.add_derivatives(places, forces, nullptr, workers);
     if (contacts != nullptr) contacts->add_derivatives(places, forces, nullptr, workers);
@@ -104,10 +104,10 @@ std::vector<double> ImplicitStep::stiffnesses(Places places, const Workers& work
 }
 
 double ImplicitStep::imbalance(Places places, const ContactEnergy& contacts, const Workers& workers) const {
-    std::vector<Vec3d> forces(masses_.size());
+    ScratchVector<Vec3d> forces(masses_.size(), workers.scratch());
     for (std::size_t i = 0; i < masses_.size(); ++i) forces[i] = (places[i] - inertial_[i]) * inertia_[i];
     contacts.add_derivatives(places, forces, nullptr, workers);
-    return translations_.imbalance(forces, inertia_);
+    return translations_.imbalance(forces, inertia_, workers);
 }
 
 /// Takes the particles that are held out of the system: their rows and columns are those of a multiple of the
@@ -161,7 +161,7 @@ StepReport ImplicitStep::solve(std::span<Vec3d> places, const ContactEnergy* con
         for (std::size_t i = 0; i < masses_.size(); ++i) right_side_[i] = Float4(-gradient_[i]);
         report.linear_iterations += linear_.solve(hessian_, multigrid_, right_side_, direction_,
                                                   budget.linear_iterations, budget.linear_tolerance, workers);
-        translations_.correct(hessian_, right_side_, direction_);
+        translations_.correct(hessian_, right_side_, direction_, workers);
         double slope = 0;
         for (std::size_t i = 0; i < masses_.size(); ++i)
             slope += dot(gradient_[i], direction_[i].to_double());

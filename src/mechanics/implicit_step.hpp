@@ -80,8 +80,8 @@ class ImplicitStep {
     double energy(Places places, const ContactEnergy* contacts, const Workers& workers) const;
     /// The forces that are missing for equilibrium at these places: those by which particles are stopped or
     /// held, and what the solver has left.
-    std::vector<Vec3d> missing_forces(Places places, const ContactEnergy* contacts,
-                                      const Workers& workers) const;
+    ScratchVector<Vec3d> missing_forces(Places places, const ContactEnergy* contacts,
+                                        const Workers& workers) const;
     /// How far a body of which nothing is held would go to balance the forces on it, as if inertia alone kept
     /// it; the farthest of all. Length
     double imbalance(Places places, const ContactEnergy& contacts, const Workers& workers) const;

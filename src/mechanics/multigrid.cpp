@@ -215,7 +215,7 @@ void Multigrid::product(const BlockMatrix& fine, std::span<const std::uint8_t> i
     const Rows<float>& parents = transfer.coarsening.parents;
     coarse.clear();
     const auto add_row = [&](std::uint32_t row, std::size_t begin, std::size_t end,
-                             std::vector<Block>& locals) {
+                             ScratchVector<Block>& locals) {
         const std::size_t local_count = transfer.first_local[row + 1] - transfer.first_local[row];
         locals.assign(local_count, Block{});
         std::uint32_t at = transfer.blocks.first[row];
@@ -239,8 +239,9 @@ void Multigrid::product(const BlockMatrix& fine, std::span<const std::uint8_t> i
         }
     };
     workers.for_ranges(coarse.row_count(), kCoarseRowsPerPiece,
-                       [&](std::size_t, std::size_t piece, std::size_t begin, std::size_t end) {
-                           std::vector<Block> locals; // its memory is reused from row to row
+                       [&](std::size_t worker, std::size_t piece, std::size_t begin, std::size_t end) {
+                           ScratchVector<Block> locals(
+                               workers.scratch(worker)); // for one row after the other
                            for (const std::uint32_t row : transfer.fine_of_piece[piece])
                                if (is_held.empty() || is_held[row] == 0) add_row(row, begin, end, locals);
                        });
@@ -256,7 +257,6 @@ void Multigrid::product(const BlockMatrix& fine, std::span<const std::uint8_t> i
 void Multigrid::add_contacts(const BlockMatrix& fine, std::span<const std::uint8_t> is_held,
                              const Transfer& transfer, BlockMatrix& coarse) {
     const Rows<float>& parents = transfer.coarsening.parents;
-    std::vector<BlockMatrix::ContactEntry> far;
     for (std::uint32_t row = 0; row < fine.row_count(); ++row) {
         if (!is_held.empty() && is_held[row] != 0) continue;
         for (std::uint32_t e = fine.contacts.first[row]; e < fine.contacts.first[row + 1]; ++e) {
@@ -269,11 +269,11 @@ void Multigrid::add_contacts(const BlockMatrix& fine, std::span<const std::uint8
                     if (block != BlockMatrix::kNone)
                         coarse.blocks.values[block].add_scaled(fine.contacts.values[e], weight);
                     else
-                        far.push_back({at, fine.contacts.values[e] * weight});
+                        coarse.add_contact(at, fine.contacts.values[e] * weight);
                 }
         }
     }
-    coarse.set_contacts(std::move(far));
+    coarse.set_contacts();
 }
 
 /// With M = (1 + excess) D + L, of the slabs' lower triangles L, the sweeps converge where M + M^T - A is
@@ -310,14 +310,14 @@ void Multigrid::set(BlockMatrix& matrix, std::span<const std::uint8_t> is_held, 
                 levels_[level].transfer, coarse, workers);
         prepare(level + 1, coarse, workers);
     }
-    factorise_last();
+    factorise_last(workers);
 }
 
-void Multigrid::factorise_last() {
+void Multigrid::factorise_last(const Workers& workers) {
     const BlockMatrix& a = matrix(levels_.size() - 1);
     if (a.row_count() > kMostLastNodes) return;
     const std::size_t size = 3 * a.row_count();
-    std::vector<float> dense(size * size);
+    ScratchVector<float> dense(size * size, workers.scratch());
     const auto add = [&](std::size_t row, std::uint32_t column, const Block& block) {
         for (std::size_t i = 0; i < 3; ++i)
             for (std::size_t j = 0; j < 3; ++j) dense[(3 * row + i) * size + 3 * column + j] += block(i, j);
@@ -333,7 +333,7 @@ void Multigrid::factorise_last() {
             add(row, a.multiples.columns[e], multiple);
         }
     }
-    last_.factorise(size, std::move(dense));
+    last_.factorise(size, dense);
     last_unknowns_.resize(size);
 }
 

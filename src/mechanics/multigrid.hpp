@@ -56,7 +56,7 @@ class Multigrid {
     static void add_contacts(const BlockMatrix& fine, std::span<const std::uint8_t> is_held,
                              const Transfer& transfer, BlockMatrix& coarse);
     void prepare(std::size_t level, BlockMatrix& matrix, const Workers& workers);
-    void factorise_last();
+    void factorise_last(const Workers& workers);
     const BlockMatrix& matrix(std::size_t level) const { return level == 0 ? *first_ : levels_[level].own; }
     void cycle(std::size_t level, std::span<const Float4> b, std::span<Float4> x, const Workers& workers);
     void solve_last(std::span<const Float4> b, std::span<Float4> x);

@@ -115,7 +115,7 @@ void NewtonSolver::step() {
 
 /// Where nothing stops it, no particle leaves all bounds in the frame.
 void NewtonSolver::require_ways() {
-    std::vector<Vec3d> ends = motion_.places;
+    ScratchVector<Vec3d> ends(motion_.places.begin(), motion_.places.end(), workers_.scratch());
     for (std::size_t i = 0; i < ends.size(); ++i)
         ends[i] += (motion_.velocities[i] + accelerations_[i] * options.time_step) * options.time_step;
     bounds_.require_ways(ends, frame);
@@ -129,18 +129,18 @@ void NewtonSolver::deform() {
         if (!deforming_[c]) continue;
         const Collider before = colliders[c];
         deforming_[c]->begin_frame(colliders[c]);
+        find_now();
         const double room = threshold::kDecidingRoom * fastest() * options.time_step;
-        deformations_[c] = {before,       *deforming_[c],
-                            places_now(), motion_.particle_count(),
-                            room,         threshold::kTouch * thickness_,
-                            workers_};
+        deformations_[c] = {
+            before,  *deforming_[c], now_, motion_.particle_count(), room, threshold::kTouch * thickness_,
+            workers_};
     }
 }
 
 /// So that what is carried along keeps its gaps, and that impacts are solved where they happen.
 std::uint32_t NewtonSolver::part_count() {
     if (!options.surface_collision) return 1;
-    const PointArrays now = places_now();
+    find_now();
     const double room = threshold::kDecidingRoom * fastest() * options.time_step;
     double longest = handles_.longest_displacement(time_of(0), time_of(1));
     for (std::size_t c = 0; c < colliders.size(); ++c) {
@@ -150,14 +150,14 @@ std::uint32_t NewtonSolver::part_count() {
             std::any_of(deformable.attachments.begin(), deformable.attachments.end(),
                         [&](const Attachment& attachment) { return attachment.collider == c; });
         is_near_[c] = holds || (meets_some_[c] != 0 &&
-                                CarryField::may_carry(colliders[c], after, now, motion_.particle_count(),
+                                CarryField::may_carry(colliders[c], after, now_, motion_.particle_count(),
                                                       room, threshold::kTouch * thickness_))
                           ? 1
                           : 0;
         const double rigid = is_near_[c] != 0 ? CarryField::longest_displacement(colliders[c], after) : 0;
         longest = std::max(longest, rigid + deformations_[c].longest);
     }
-    const double overlap = contacts_->overlap_ahead(colliders, now, guess(motion_.places, options.time_step),
+    const double overlap = contacts_->overlap_ahead(colliders, now_, guess(motion_.places, options.time_step),
                                                     may_touch_, workers_);
     const double parts = std::ceil(std::max(longest / (threshold::kMostCarried * thickness_),
                                             overlap / (threshold::kMostOverlap * mean_edge_)));
@@ -169,25 +169,23 @@ std::uint32_t NewtonSolver::part_count() {
 bool NewtonSolver::step_part(const FramePart& part) {
     const float share = part.end - part.begin;
     const double seconds = options.time_step * double{share};
-    const std::vector<Collider> before = colliders;
+    colliders_before_ = colliders;
     for (Collider& collider : colliders) collider.pose = pose_after(collider, seconds);
-    const std::optional<PointArrays> carried =
-        carried_start(before, part, share <= threshold::kLeastPartOfFrame);
-    if (!carried) {
-        colliders = before;
+    if (!find_start(part, share <= threshold::kLeastPartOfFrame)) {
+        colliders = colliders_before_;
         return false;
     }
-    const PointArrays& start = *carried;
-    if (contacts_) contacts_->particles().begin_step(before, colliders, motion_.places, is_held_);
-    const std::vector<Vec3d> from = exact(start);
-    std::vector<Vec3d> places = guess(from, seconds);
+    if (contacts_) contacts_->particles().begin_step(colliders_before_, colliders, motion_.places, is_held_);
+    const ScratchVector<Vec3d> from = exact_start();
+    ScratchVector<Vec3d> places = guess(from, seconds);
     choose_orders(share < 1);
     step_.begin(motion_, accelerations_, is_held_, seconds, options.air_drag);
     step_.calm(from, places, workers_);
-    minimise(places, start, seconds);
-    const std::vector<Vec3d> velocities_before = motion_.velocities;
-    const std::vector<std::uint8_t> nothing_touches(contacts_ ? 0 : places.size());
-    advance(motion_, places, contacts_ ? contacts_->touching() : nothing_touches, seconds);
+    minimise(places, seconds);
+    const ScratchVector<Vec3d> velocities_before(motion_.velocities.begin(), motion_.velocities.end(),
+                                                 workers_.scratch());
+    const ScratchVector<std::uint8_t> nothing_touches(contacts_ ? 0 : places.size(), workers_.scratch());
+    advance(motion_, places, contacts_ ? contacts_->touching() : std::span(nothing_touches), seconds);
     if (contacts_) contacts_->particles().end_step(motion_.places, motion_.velocities, seconds);
     for (std::size_t i = 0; i < places.size(); ++i) {
         gained_[i] = (motion_.velocities[i] - velocities_before[i]) * (1 / seconds);
@@ -202,7 +200,7 @@ bool NewtonSolver::step_part(const FramePart& part) {
 void NewtonSolver::choose_orders(bool is_part) {
     if (is_part || was_part_) std::fill(motion_.is_smooth.begin(), motion_.is_smooth.end(), std::uint8_t{0});
     was_part_ = is_part ? 1 : 0;
-    std::vector<std::uint8_t> is_rough = may_touch_;
+    ScratchVector<std::uint8_t> is_rough(may_touch_.begin(), may_touch_.end(), workers_.scratch());
     for (std::size_t i = 0; i < is_rough.size(); ++i)
         if (motion_.is_smooth[i] == 0 && is_held_[i] == 0) is_rough[i] = 1;
     step_.spread(is_rough);
@@ -210,44 +208,41 @@ void NewtonSolver::choose_orders(bool is_part) {
         if (is_rough[i] != 0) motion_.is_smooth[i] = 0;
 }
 
-PointArrays NewtonSolver::places_now() const {
-    PointArrays places;
-    places.resize(motion_.particle_count());
-    for (std::size_t i = 0; i < motion_.particle_count(); ++i) places.set(i, Vec3f(motion_.places[i]));
-    return places;
+void NewtonSolver::find_now() {
+    now_.resize(motion_.particle_count());
+    for (std::size_t i = 0; i < motion_.particle_count(); ++i) now_.set(i, Vec3f(motion_.places[i]));
 }
 
 /// Where the step begins: what colliders carry is with them.
 /// @param is_least  carries it even where something meets then
-/// @return none where they cannot carry it so far
-std::optional<PointArrays> NewtonSolver::carried_start(const std::vector<Collider>& before,
-                                                       const FramePart& part, bool is_least) {
-    const PointArrays from = places_now();
-    PointArrays start = from;
-    attachments_.follow(colliders, deforming_, part.end, start);
-    handles_.follow(time_of(part.begin), time_of(part.end), start);
-    if (!contacts_ || !options.surface_collision) return start;
+/// @return whether they can carry it so far
+bool NewtonSolver::find_start(const FramePart& part, bool is_least) {
+    find_now();
+    start_ = now_;
+    attachments_.follow(colliders, deforming_, part.end, start_);
+    handles_.follow(time_of(part.begin), time_of(part.end), start_);
+    if (!contacts_ || !options.surface_collision) return true;
     const Stopwatch stopwatch(profile.collision_seconds);
-    const CarryField field(before, colliders, is_near_, deformations_, part, threshold::kTouch * thickness_);
+    const CarryField field(colliders_before_, colliders, is_near_, deformations_, part,
+                           threshold::kTouch * thickness_);
     if (field.is_zero() && !(handles_.longest_displacement(time_of(part.begin), time_of(part.end)) > 0))
-        return start;
-    field.carry(start, is_held_, workers_);
-    const bool is_carried =
-        contacts_->carry(before, colliders, deformations_, part, from, start, is_held_, is_least, workers_);
-    return is_carried ? std::optional(start) : std::nullopt;
+        return true;
+    field.carry(start_, is_held_, workers_);
+    return contacts_->carry(colliders_before_, colliders, deformations_, part, now_, start_, is_held_,
+                            is_least, workers_);
 }
 
 /// Where nothing carries a particle, all its digits are kept.
-std::vector<Vec3d> NewtonSolver::exact(const PointArrays& start) const {
-    std::vector<Vec3d> places = motion_.places;
+ScratchVector<Vec3d> NewtonSolver::exact_start() const {
+    ScratchVector<Vec3d> places(motion_.places.begin(), motion_.places.end(), workers_.scratch());
     for (std::size_t i = 0; i < places.size(); ++i)
-        if (start[i] != Vec3f(places[i])) places[i] = Vec3d(start[i]);
+        if (start_[i] != Vec3f(places[i])) places[i] = Vec3d(start_[i]);
     return places;
 }
 
 /// Inertia and as much of gravity as the last step has left. @param start  from where what is carried goes on
-std::vector<Vec3d> NewtonSolver::guess(std::span<const Vec3d> start, double seconds) const {
-    std::vector<Vec3d> places(start.begin(), start.end());
+ScratchVector<Vec3d> NewtonSolver::guess(std::span<const Vec3d> start, double seconds) const {
+    ScratchVector<Vec3d> places(start.begin(), start.end(), workers_.scratch());
     for (std::size_t i = 0; i < places.size(); ++i) {
         if (is_held_[i] != 0) continue;
         const Vec3d pull = accelerations_[i];
@@ -260,7 +255,7 @@ std::vector<Vec3d> NewtonSolver::guess(std::span<const Vec3d> start, double seco
     return places;
 }
 
-void NewtonSolver::minimise(std::vector<Vec3d>& places, const PointArrays& start, double seconds) {
+void NewtonSolver::minimise(std::span<Vec3d> places, double seconds) {
     const std::uint32_t newton_steps = options.newton_step_count;
     StepBudget budget;
     budget.tolerance = options.newton_tolerance * mean_edge_;
@@ -275,7 +270,7 @@ void NewtonSolver::minimise(std::vector<Vec3d>& places, const PointArrays& start
         work();
     };
     const auto energy = [&](Places at) { return step_.energy(at, &contacts_->energy(), workers_); };
-    contact([&] { contacts_->begin_step(colliders, start, places, is_held_, seconds, workers_); });
+    contact([&] { contacts_->begin_step(colliders, start_, places, is_held_, seconds, workers_); });
     budget.newton_steps = 1;
     for (std::uint32_t newton = 0; newton < newton_steps; ++newton) {
         double last_move = 0;
@@ -293,7 +288,7 @@ void NewtonSolver::minimise(std::vector<Vec3d>& places, const PointArrays& start
         contacts_->end_step(places);
         if (contacts_->stops() || !deformable.attachments.empty())
             contacts_->add_loads(places, step_.missing_forces(places, &contacts_->energy(), workers_),
-                                 held_by_);
+                                 held_by_, workers_);
     });
     profile.contact_count += contacts_->pushing_count(places);
     profile.measured_pair_count += contacts_->pair_count();
@@ -317,9 +312,8 @@ double NewtonSolver::fastest() const {
 void NewtonSolver::publish() {
     publish_places();
     largest_speed = fastest();
-    PointArrays ends;
-    ends.load(deformable.positions);
-    bounds_.require_ends(ends, deformable.particle_count(), frame);
+    now_.load(deformable.positions);
+    bounds_.require_ends(now_, deformable.particle_count(), frame);
 }
 
 void NewtonSolver::publish_places() {
@@ -351,8 +345,8 @@ void NewtonSolver::move_particles(const RigidTransform& motion) {
 /// second.
 void NewtonSolver::blow(const Vec3d& wind, double rate) {
     const double most = 1 / options.time_step; // no more than all of the difference in a frame
-    std::vector<Vec3d> sums(deformable.particle_count());
-    std::vector<std::uint32_t> counts(deformable.particle_count());
+    ScratchVector<Vec3d> sums(deformable.particle_count(), workers_.scratch());
+    ScratchVector<std::uint32_t> counts(deformable.particle_count(), workers_.scratch());
     for (const Triangle& face : deformable.faces) {
         const auto& [a, b, c] = face;
         const Vec3d normal =

@@ -33,14 +33,13 @@ class NewtonSolver : public Solver {
     void deform();
     std::uint32_t part_count();
     bool step_part(const FramePart& part);
-    PointArrays places_now() const;
+    void find_now();
     double fastest() const;
     void choose_orders(bool is_part);
-    std::optional<PointArrays> carried_start(const std::vector<Collider>& before, const FramePart& part,
-                                             bool is_least);
-    std::vector<Vec3d> exact(const PointArrays& start) const;
-    std::vector<Vec3d> guess(std::span<const Vec3d> start, double seconds) const;
-    void minimise(std::vector<Vec3d>& places, const PointArrays& start, double seconds);
+    bool find_start(const FramePart& part, bool is_least);
+    ScratchVector<Vec3d> exact_start() const;
+    ScratchVector<Vec3d> guess(std::span<const Vec3d> start, double seconds) const;
+    void minimise(std::span<Vec3d> places, double seconds);
     bool are_bodies_balanced(Places places);
     void publish();
     void publish_places();
@@ -54,10 +53,13 @@ class NewtonSolver : public Solver {
     std::vector<Deformation> deformations_; ///< by collider, in this frame
     std::vector<std::uint8_t>
         is_near_; ///< [collider] 1 for those that may carry anything in this frame, or hold it
-    std::vector<std::uint8_t> may_touch_;  ///< [particle] 1 for those that may do so in this frame
-    std::uint8_t was_part_ = 0;            ///< of a frame, the last step
-    std::vector<std::uint32_t> held_by_;   ///< [particle] the collider that it is attached to, or kNoObstacle
-    std::vector<std::uint8_t> meets_some_; ///< [collider] 0 for those that let all particles through
+    std::vector<std::uint8_t> may_touch_; ///< [particle] 1 for those that may do so in this frame
+    std::uint8_t was_part_ = 0;           ///< of a frame, the last step
+    std::vector<std::uint32_t> held_by_;  ///< [particle] the collider that it is attached to, or kNoObstacle
+    PointArrays now_, start_; ///< where particles are, and where the step begins: what colliders carry is
+                              ///< with them
+    std::vector<Collider> colliders_before_; ///< where the step began
+    std::vector<std::uint8_t> meets_some_;   ///< [collider] 0 for those that let all particles through
     std::optional<SurfaceContacts> contacts_;
     double mean_edge_; ///< of the surface
     double thickness_; ///< in force: positive

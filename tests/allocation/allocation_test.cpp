@@ -56,6 +56,20 @@ void operator delete(void* memory) noexcept {
 void operator delete(void* memory, std::size_t) noexcept {
     operator delete(memory);
 }
+void* operator new(std::size_t size, std::align_val_t alignment) {
+    const std::size_t unit = static_cast<std::size_t>(alignment);
+    void* const memory = std::aligned_alloc(unit, (size + unit - 1) / unit * unit);
+    if (memory == nullptr) throw std::bad_alloc();
+    ++allocation_count;
+    raise_most_held_bytes(held_bytes += malloc_usable_size(memory));
+    return memory;
+}
+void operator delete(void* memory, std::align_val_t) noexcept {
+    operator delete(memory);
+}
+void operator delete(void* memory, std::size_t, std::align_val_t) noexcept {
+    operator delete(memory);
+}
 
 namespace {
 
@@ -93,6 +107,23 @@ TEST(Step, AllocatesNothingBesideAnyKindOfMap) {
     for (int i = 0; i < 100; ++i) simulation.step();
     EXPECT_EQ(allocation_count, before);
     EXPECT_GT(simulation.profile().rescued_count, 0u);
+}
+
+TEST(Step, AllocatesNothingOnceItHasSeenItsLargest) {
+    const auto box = ExactMap::build(make_box({0.4, 0.4, 0.4}));
+    const auto ball = DistanceMap::build(make_sphere(0.2, 16, 8));
+    SimulationOptions options{.thickness = 0.01};
+    options.surface_collision = options.self_collision = true;
+    options.material.damping = 0.3; // to hang still soon
+    Simulation simulation(
+        make_cloth({.column_count = 20, .row_count = 20, .pose = {Rotation{}, {0, 0, 0.22}}}),
+        {{.map = box}, {.map = ball, .pose = {Rotation{}, {0.3, 0.3, 0}}, .angular_velocity = {0, 0, 1e-4}}},
+        options);
+    for (int i = 0; i < 240; ++i) simulation.step();
+    const std::size_t before = allocation_count;
+    for (int i = 0; i < 30; ++i) simulation.step();
+    EXPECT_EQ(allocation_count, before);
+    EXPECT_GT(simulation.profile().contact_count, 0u);
 }
 
 TEST(RestoreState, TakesMemoryForTheBytesThatAreThereWhateverCountsSay) {

@@ -379,12 +379,12 @@ TEST(Mechanics, ASystemThatIsHardlySolvedKeepsTheMomentumOfEachBody) {
 
 TEST(Mechanics, CholeskySolvesAndPassesOverWhatIsSingular) {
     Cholesky<double> factor;
-    factor.factorise(2, {4, 0, 2, 3});
+    factor.factorise(2, std::array{4.0, 0.0, 2.0, 3.0});
     std::array<double, 2> x{10, 8};
     factor.solve(x);
     EXPECT_NEAR(x[0], 1.75, 1e-12);
     EXPECT_NEAR(x[1], 1.5, 1e-12);
-    factor.factorise(2, {1, 0, 1, 1}); // of rank 1
+    factor.factorise(2, std::array{1.0, 0.0, 1.0, 1.0}); // of rank 1
     x = {1, 1};
     factor.solve(x);
     EXPECT_TRUE(std::isfinite(x[0]) && std::isfinite(x[1]));

@@ -59,9 +59,9 @@ Deformation::Deformation(const Collider& before, const DeformingCollider& surfac
             box.distance(body.point_to_world<double>(motion->from[v])) <= displacement + touch + room)
             longest = displacement;
     }
-    std::vector<Vec3f> places(point_count);
+    ScratchVector<Vec3f> places(point_count, workers.scratch());
     points.store(places);
-    std::vector<Contact> contacts(point_count);
+    ScratchVector<Contact> contacts(point_count, workers.scratch());
     const auto reach = static_cast<float>(touch + threshold::kFade * longest);
     workers.for_ranges(point_count, kPointsPerPiece,
                        [&](std::size_t, std::size_t, std::size_t begin, std::size_t end) {
@@ -156,7 +156,7 @@ Vec3d CarryField::displacement_of(const Blend& blend) const {
 void CarryField::carry(PointArrays& points, std::span<const std::uint8_t> is_held,
                        const Workers& workers) const {
     if (!moves_) return;
-    std::vector<Blend> blends(is_held.size());
+    ScratchVector<Blend> blends(is_held.size(), workers.scratch());
     for (std::size_t c = 0; c < before_.size(); ++c)
         if (deformations_[c].motion != nullptr) add_deforming(c, points, blends);
     const auto carry_point = [&](std::size_t i) {

@@ -170,7 +170,6 @@ double ContactSet::energy(Places places, const Workers& workers) const {
 
 void ContactSet::add_derivatives(Places places, std::span<Vec3d> gradient, BlockMatrix* hessian,
                                  const Workers&) const {
-    std::vector<BlockMatrix::ContactEntry> far;
     for (const Held& contact : contacts_) {
         const GapEnergy gap = gap_energy(gap_of(contact, places), contact.thickness, contact.force);
         Vec3d force = contact.normal * gap.first;
@@ -206,11 +205,11 @@ void ContactSet::add_derivatives(Places places, std::span<Vec3d> gradient, Block
                 if (entry != BlockMatrix::kNone)
                     hessian->blocks.values[entry].add_scaled(block, static_cast<float>(weight));
                 else
-                    far.push_back({{i, j}, block * static_cast<float>(weight)});
+                    hessian->add_contact({i, j}, block * static_cast<float>(weight));
             }
         }
     }
-    if (hessian != nullptr) hessian->set_contacts(std::move(far));
+    if (hessian != nullptr) hessian->set_contacts();
 }
 
 std::size_t ContactSet::pushing_count(Places places) const {

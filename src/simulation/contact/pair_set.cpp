@@ -56,7 +56,7 @@ void PairSet::list(const Displacements& displacements, std::span<const std::uint
         obstacle_stands_ = &obstacle_from == &obstacle_to;
     }
     find_pairs(displacements, workers);
-    std::vector<Pair> known;
+    ScratchVector<Pair> known(workers.scratch());
     if (starts_there) {
         std::copy_if(listed_.begin(), listed_.end(), std::back_inserter(known), is_affected);
         std::sort(known.begin(), known.end(), comes_before);

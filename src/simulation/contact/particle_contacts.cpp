@@ -34,33 +34,34 @@ void ParticleContacts::begin_step(const std::vector<Collider>& before, const std
         if (found.inside) began_inside_.push_back({found.particle, found.obstacle});
 }
 
+void ParticleContacts::Answers::resize(std::size_t count) {
+    particles.resize(count);
+    colliders.resize(count);
+    points.resize(count);
+    normals.resize(count);
+    depths.resize(count);
+    inside.resize(count);
+}
+
 /// All that is found inside, or outside within a margin.
 void ParticleContacts::find(Places places, double margin) {
     const auto ask = [&](const ContactArrays<double>& contacts) {
         return contacts_into(after_, StridedSpan<const Vec3d>(places), static_cast<float>(margin), contacts);
     };
-    std::vector<std::uint32_t> particles(places.size()), colliders(places.size());
-    std::vector<Vec3d> points(places.size());
-    std::vector<Vec3f> normals(places.size());
-    std::vector<float> depths(places.size());
-    std::vector<std::uint8_t> inside(places.size());
+    answers_.resize(std::max(places.size(), answers_.particles.size()));
     std::size_t count = 0;
     for (;;) {
-        count = ask({.particles = particles,
-                     .points = points,
-                     .normals = normals,
-                     .depths = depths,
-                     .inside = inside,
-                     .colliders = colliders});
+        count = ask({.particles = answers_.particles,
+                     .points = answers_.points,
+                     .normals = answers_.normals,
+                     .depths = answers_.depths,
+                     .inside = answers_.inside,
+                     .colliders = answers_.colliders});
         query_count_ += places.size() * after_.size();
-        if (count <= particles.size()) break;
-        particles.resize(count);
-        colliders.resize(count);
-        points.resize(count);
-        normals.resize(count);
-        depths.resize(count);
-        inside.resize(count);
+        if (count <= answers_.particles.size()) break;
+        answers_.resize(count);
     }
+    const auto& [particles, colliders, points, normals, depths, inside] = answers_;
     found_.clear();
     for (std::size_t n = 0; n < count; ++n) {
         const std::uint32_t i = particles[n];

@@ -58,6 +58,15 @@ class ParticleContacts {
         double depth;
         bool inside;
     };
+    /// The arrays that are asked for.
+    struct Answers {
+        std::vector<std::uint32_t> particles, colliders;
+        std::vector<Vec3d> points;
+        std::vector<Vec3f> normals;
+        std::vector<float> depths;
+        std::vector<std::uint8_t> inside;
+        void resize(std::size_t count);
+    };
     struct Inside {
         std::uint32_t particle, obstacle;
     };
@@ -78,6 +87,7 @@ class ParticleContacts {
     std::span<const std::uint8_t> is_held_;
     std::vector<Inside> began_inside_; ///< sorted
     std::vector<Put> put_;             ///< outside, in this step
+    Answers answers_;                  ///< of the last find()
     std::vector<Found> found_;         ///< of the last find()
     std::uint64_t query_count_ = 0, lost_count_ = 0;
 };

@@ -11,20 +11,21 @@ namespace echinus {
 
 SafeDisplacements::SafeDisplacements(std::span<ContactSide> sides, Places goals,
                                      std::span<const std::uint8_t> is_held, std::span<const double> masses,
-                                     float share)
-    : sides_(sides), goals_(goals), is_held_(is_held), masses_(masses), share_(share),
-      ends_(goals.begin(), goals.end()), pushed_(goals.size()), pushed_by_(goals.size(), kNoObstacle),
-      enough_(sides.size()) {}
+                                     float share, const Workers& workers)
+    : sides_(sides), goals_(goals), is_held_(is_held), masses_(masses), share_(share), workers_(workers),
+      ends_(goals.begin(), goals.end(), workers.scratch()), pushed_(goals.size(), workers.scratch()),
+      pushed_by_(goals.size(), kNoObstacle, workers.scratch()),
+      enough_(sides.size(), ScratchVector<float>(workers.scratch()), workers.scratch()) {}
 
-Places SafeDisplacements::find(const Workers& workers) {
+Places SafeDisplacements::find() {
     for (ContactSide& side : sides_) side.to_frame(goals_, side.goal);
-    for (std::vector<float>& of_side : enough_) of_side.clear();
+    for (ScratchVector<float>& of_side : enough_) of_side.clear();
     has_converged_ = false;
     for (int round = 0; round < threshold::kMostPushingRounds && !has_converged_; ++round) {
         has_converged_ = true;
         for (std::size_t s = 0; s < sides_.size(); ++s) {
             sides_[s].to_frame(ends_, sides_[s].base);
-            sides_[s].measure(workers);
+            sides_[s].measure(workers_);
             has_converged_ = !correct(sides_[s], enough_[s]) && has_converged_;
         }
     }
@@ -82,7 +83,7 @@ float SafeDisplacements::pushed(const ContactSide& side, std::size_t index) cons
 /// @param enough  [pair] while its particles have been pushed less far in all, it closes no farther than it
 /// may
 /// @return whether there were any to push apart
-bool SafeDisplacements::correct(ContactSide& side, std::vector<float>& enough) {
+bool SafeDisplacements::correct(ContactSide& side, ScratchVector<float>& enough) {
     bool is_any_pushed = false;
     enough.resize(side.pairs.pairs().size());
     for (std::size_t p = 0; p < enough.size(); ++p) {

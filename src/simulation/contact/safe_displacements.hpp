@@ -21,12 +21,12 @@ class SafeDisplacements {
     /// @param masses   [particle] by which the parts of a pair share a push; none: they share it equally
     /// @param share    of each gap that may be closed, 0 to 1
     SafeDisplacements(std::span<ContactSide> sides, Places goals, std::span<const std::uint8_t> is_held,
-                      std::span<const double> masses, float share);
+                      std::span<const double> masses, float share, const Workers& workers);
 
     /// Corrects what is still to be corrected, for instance when more pairs are listed. Leaves in each side
     /// the pairs measured that are near on the way to the ends.
     /// @return [particle] ends: its goal where nothing pushes it
-    Places find(const Workers& workers);
+    Places find();
     /// Whether find() has ended with nothing more to correct.
     bool has_converged() const { return has_converged_; }
     /// [particle] the side against which it was pushed last, or kNoObstacle.
@@ -46,7 +46,7 @@ class SafeDisplacements {
     float room_of(const ContactSide& side, float gap) const;
     Plane plane_between(const ContactSide& side, std::size_t index) const;
     float pushed(const ContactSide& side, std::size_t index) const;
-    bool correct(ContactSide& side, std::vector<float>& enough);
+    bool correct(ContactSide& side, ScratchVector<float>& enough);
     bool push_apart(ContactSide& side, const Pair& pair, const Plane& plane);
 
     std::span<ContactSide> sides_;
@@ -54,10 +54,11 @@ class SafeDisplacements {
     std::span<const std::uint8_t> is_held_;
     std::span<const double> masses_;
     float share_;
-    std::vector<Vec3d> ends_;
-    std::vector<float> pushed_; ///< [particle] how far in all
-    std::vector<std::uint32_t> pushed_by_;
-    std::vector<std::vector<float>> enough_; ///< [side][pair] as of correct()
+    const Workers& workers_;
+    ScratchVector<Vec3d> ends_;
+    ScratchVector<float> pushed_; ///< [particle] how far in all
+    ScratchVector<std::uint32_t> pushed_by_;
+    ScratchVector<ScratchVector<float>> enough_; ///< [side][pair] as of correct()
     std::size_t unresolved_count_ = 0;
     bool has_converged_ = false;
 };

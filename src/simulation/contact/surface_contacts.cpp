@@ -153,7 +153,7 @@ bool SurfaceContacts::carry(const std::vector<Collider>& before, const std::vect
     is_held_ = is_held;
     start_ = from;
     set_safe(from);
-    std::vector<Vec3d> places(safe_places_.size());
+    ScratchVector<Vec3d> places(safe_places_.size(), workers.scratch());
     for (std::size_t i = 0; i < places.size(); ++i) places[i] = Vec3d(carried[i]);
     for (ContactSide& side : sides_) {
         const bool is_model = !side.pairs.is_of_itself();
@@ -230,10 +230,10 @@ void SurfaceContacts::begin_step(const std::vector<Collider>& colliders, const P
 /// @return whether nothing meets on the way to the ends, but what is counted as unresolved
 bool SurfaceContacts::find_ends(std::span<Vec3d> places, std::span<const double> masses, float share,
                                 const Workers& workers) {
-    const std::vector<Vec3d> goals(places.begin(), places.end());
-    SafeDisplacements displacements(sides_, goals, is_held_, masses, share);
+    const ScratchVector<Vec3d> goals(places.begin(), places.end(), workers.scratch());
+    SafeDisplacements displacements(sides_, goals, is_held_, masses, share, workers);
     for (int round = 0; round < threshold::kMostListingRounds; ++round) {
-        const Places ends = displacements.find(workers);
+        const Places ends = displacements.find();
         unresolved_ = displacements.unresolved_count();
         for (std::size_t i = 0; i < places.size(); ++i) places[i] = is_held_[i] != 0 ? goals[i] : ends[i];
         for (std::size_t i = 0; i < places.size(); ++i)
@@ -248,9 +248,9 @@ bool SurfaceContacts::find_ends(std::span<Vec3d> places, std::span<const double>
 
 /// [body, by its first particle] the displacement from the safe state that all of it has in common, which
 /// nothing within it takes from it; 0 where any are held.
-std::vector<Vec3d> SurfaceContacts::common_displacements(Places goals) const {
-    std::vector<Vec3d> sums(goals.size());
-    std::vector<double> masses(goals.size());
+ScratchVector<Vec3d> SurfaceContacts::common_displacements(Places goals, const Workers& workers) const {
+    ScratchVector<Vec3d> sums(goals.size(), workers.scratch());
+    ScratchVector<double> masses(goals.size(), workers.scratch());
     for (std::size_t i = 0; i < goals.size(); ++i) {
         const double mass = is_held_[i] != 0 ? std::numeric_limits<double>::infinity() : masses_[i];
         masses[bodies_[i]] += mass;
@@ -264,9 +264,10 @@ std::vector<Vec3d> SurfaceContacts::common_displacements(Places goals) const {
 /// Marks what did not reach its goal. @param is_stopped  [body] set to 1 where any of it did not
 /// @return how many particles did not, and whether they belong to bodies that were not marked
 SurfaceContacts::Stopped SurfaceContacts::mark_stopped(Places goals, Places ends,
-                                                       std::span<std::uint8_t> is_stopped) {
+                                                       std::span<std::uint8_t> is_stopped,
+                                                       const Workers& workers) {
     Stopped stopped;
-    const std::vector<std::uint8_t> before(is_stopped.begin(), is_stopped.end());
+    const ScratchVector<std::uint8_t> before(is_stopped.begin(), is_stopped.end(), workers.scratch());
     missed_ = 0;
     for (std::size_t i = 0; i < goals.size(); ++i) {
         const double missed = length(goals[i] - ends[i]);
@@ -288,10 +289,12 @@ SurfaceContacts::Stopped SurfaceContacts::mark_stopped(Places goals, Places ends
 std::size_t SurfaceContacts::go_towards(std::span<Vec3d> places, const StepEnergy& energy,
                                         const Workers& workers) {
     constexpr int kLast = 2 * threshold::kMostHalvings;
-    const std::vector<Vec3d> wanted(places.begin(), places.end()), from = safe_places_;
-    const std::vector<Vec3d> common = common_displacements(wanted);
-    std::vector<Vec3d> goals = wanted;
-    std::vector<std::uint8_t> is_stopped(goals.size()); // [body]
+    Scratch& scratch = workers.scratch();
+    const ScratchVector<Vec3d> wanted(places.begin(), places.end(), scratch);
+    const ScratchVector<Vec3d> common = common_displacements(wanted, workers);
+    const std::vector<Vec3d>& from = safe_places_;
+    ScratchVector<Vec3d> goals = wanted;
+    ScratchVector<std::uint8_t> is_stopped(goals.size(), scratch); // [body]
     std::optional<double> most_energy;
     std::size_t most_stopped = 0;
     for (int halvings = 0;; ++halvings) {
@@ -303,7 +306,7 @@ std::size_t SurfaceContacts::go_towards(std::span<Vec3d> places, const StepEnerg
         }
         std::copy(goals.begin(), goals.end(), places.begin());
         const bool is_safe = find_ends(places, masses_, 1, workers);
-        const Stopped stopped = mark_stopped(goals, places, is_stopped);
+        const Stopped stopped = mark_stopped(goals, places, is_stopped, workers);
         most_stopped = std::max(most_stopped, stopped.count);
         if (is_safe && most_stopped == 0) break;
         if (share == 0) {
@@ -324,7 +327,7 @@ std::size_t SurfaceContacts::go_towards(std::span<Vec3d> places, const StepEnerg
 
 std::size_t SurfaceContacts::advance(std::span<Vec3d> places, const StepEnergy& energy,
                                      const Workers& workers) {
-    const std::vector<Vec3d> goals(places.begin(), places.end());
+    const ScratchVector<Vec3d> goals(places.begin(), places.end(), workers.scratch());
     std::size_t stopped = 0;
     for (int pass = 0; pass < threshold::kMostPasses; ++pass) {
         std::copy(goals.begin(), goals.end(), places.begin());
@@ -433,10 +436,10 @@ bool SurfaceContacts::stops() const {
 }
 
 void SurfaceContacts::add_loads(Places places, std::span<const Vec3d> forces,
-                                std::span<const std::uint32_t> held_by) {
+                                std::span<const std::uint32_t> held_by, const Workers& workers) {
     if (collider_count_ == 0) return;
     // Where stops have shortened the step of a body, those beside the stopped ones are stopped, too.
-    std::vector<std::size_t> stops(bodies_.size() * collider_count_);
+    ScratchVector<std::size_t> stops(bodies_.size() * collider_count_, workers.scratch());
     for (std::size_t i = 0; i < bodies_.size(); ++i)
         if (stopped_by_[i] < collider_count_) ++stops[bodies_[i] * collider_count_ + stopped_by_[i]];
     const auto stopped_with = [&](std::size_t body) {

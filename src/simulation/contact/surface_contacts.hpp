@@ -80,7 +80,8 @@ class SurfaceContacts {
     bool stops() const;
     /// Loads of what colliders have stopped in this step, or hold. @param forces  [particle] by which
     /// @param held_by  [particle] the collider that holds it, or kNoObstacle
-    void add_loads(Places places, std::span<const Vec3d> forces, std::span<const std::uint32_t> held_by);
+    void add_loads(Places places, std::span<const Vec3d> forces, std::span<const std::uint32_t> held_by,
+                   const Workers& workers);
     /// The friction that this step has left in contacts stays for the next.
     void end_step(Places places);
 
@@ -105,12 +106,13 @@ class SurfaceContacts {
     Vec3d slip_start(const ContactSide& side, const Pair& pair, const std::array<double, 4>& shares) const;
     bool find_ends(std::span<Vec3d> places, std::span<const double> masses, float share,
                    const Workers& workers);
-    std::vector<Vec3d> common_displacements(Places goals) const;
+    ScratchVector<Vec3d> common_displacements(Places goals, const Workers& workers) const;
     struct Stopped {
         std::size_t count = 0;
         bool is_any_new = false;
     };
-    Stopped mark_stopped(Places goals, Places ends, std::span<std::uint8_t> is_stopped);
+    Stopped mark_stopped(Places goals, Places ends, std::span<std::uint8_t> is_stopped,
+                         const Workers& workers);
     std::size_t go_towards(std::span<Vec3d> places, const StepEnergy& energy, const Workers& workers);
     void find_contacts(Places goals, bool is_solved);
     void add_contacts(const ContactSide& side, Places goals, bool is_solved);
