@@ -44,10 +44,10 @@ if(ECHINUS_SANITIZE)
   if(ECHINUS_SANITIZE MATCHES "undefined")
     target_compile_options(echinus_options INTERFACE -fsanitize=float-cast-overflow)
   endif()
-  # These take about a sixth of the time to compile a source. The address sanitizer finds most of what they would; what
-  # alignment and vptr alone would find, it does not.
+  # These take about a quarter of the time to compile a source, half of it pointer-overflow. The address sanitizer finds most
+  # of what they would; what alignment and vptr alone would find, it does not.
   if(ECHINUS_SANITIZE MATCHES "address,undefined")
-    target_compile_options(echinus_options INTERFACE -fno-sanitize=null,object-size,alignment,vptr)
+    target_compile_options(echinus_options INTERFACE -fno-sanitize=null,object-size,alignment,vptr,pointer-overflow)
   endif()
   target_link_options(echinus_options INTERFACE -fsanitize=${ECHINUS_SANITIZE})
 endif()
