@@ -1,6 +1,7 @@
 #include "support/distance_maps.hpp"
 #include "support/instruction_sets.hpp"
 #include "support/random_points.hpp"
+#include "support/samples.hpp"
 
 #include <echinus/distance_map.hpp>
 
@@ -39,15 +40,16 @@ std::vector<Vec3f> particles_about(const DistanceMapView& map, std::size_t rando
     for (float x : kOdd)
         for (float y : kOdd)
             for (float z : kOdd) points.push_back(map.centre + Vec3f{x, y, z});
+    points = test::sampled(points);
     for (float bad : {kNaN, kInfinity, -kInfinity, std::numeric_limits<float>::max(),
                       std::numeric_limits<float>::denorm_min()})
         for (const Vec3f& p : {Vec3f{bad, 0, 0}, Vec3f{0, bad, 0}, Vec3f{0, 0, bad}, Vec3f{bad, bad, bad}})
             points.push_back(p);
     test::Random random(7);
-    for (std::size_t i = 0; i < random_count; ++i)
+    for (std::size_t i = 0; i < random_count; i += test::kSampleStride)
         points.push_back(map.centre + test::in_cube(random, 1.1F * r));
     // Along the seam and around the poles, where a grid of directions closes.
-    for (std::size_t i = 0; i < random_count / 8; ++i) {
+    for (std::size_t i = 0; i < random_count / 8; i += test::kSampleStride) {
         const Vec3f p = test::in_cube(random, r);
         const float tiny = 0.01F * p.z;
         for (const Vec3f& d :
