@@ -1,6 +1,7 @@
 #include "mechanics/bending.hpp"
 
 #include "geometry/elementary.hpp"
+#include "mechanics/thresholds.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -19,8 +20,7 @@ double cotangent(const Vec3d& a, const Vec3d& b) {
 }
 
 bool is_flat(const ElasticHinge& hinge) {
-    constexpr float kFlat = 1e-4F; // radians: rounding of a flat mesh in floats
-    return std::fabs(hinge.rest_angle) < kFlat;
+    return std::fabs(hinge.rest_angle) < threshold::kFlatHinge;
 }
 
 struct Angle {

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "geometry/workers.hpp"
-#include "mechanics/block_matrix.hpp"
+#include "mechanics/linear/block_matrix.hpp"
 
 #include <cstddef>
 #include <cstdint>

@@ -1,5 +1,7 @@
 #include "mechanics/implicit_step.hpp"
 
+#include "mechanics/thresholds.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -7,15 +9,6 @@
 namespace echinus {
 
 namespace {
-
-/// Armijo's condition: the share of the slope's promise that a step has to keep.
-constexpr double kSufficientDecrease = 1e-4;
-/// A guess is halved at most so often: then nothing is left of its way.
-constexpr std::uint32_t kMostHalvingsOfGuess = 24;
-/// After so many shorter trials the step is taken as it is.
-constexpr std::uint32_t kMostHalvings = 12;
-/// Differences of the energy below this share of it are rounding.
-constexpr double kEnergyRounding = 1e-11;
 
 /// Of BDF2: v = (x - from) / (2 h / 3) with from = (4 x0 - x00) / 3, and the same of the velocity.
 constexpr double kSecondOrderStep = 2.0 / 3;
@@ -144,7 +137,7 @@ void ImplicitStep::calm(Places start, std::span<Vec3d> guess, const Workers& wor
     common *= is_free ? 1 / mass : 0;
     for (std::size_t i = 0; i < guess.size(); ++i) trial_[i] = start[i] + common;
     const double most = energy(trial_, nullptr, workers);
-    for (std::uint32_t halving = 0; halving < kMostHalvingsOfGuess; ++halving) {
+    for (std::uint32_t halving = 0; halving < threshold::kMostHalvingsOfGuess; ++halving) {
         if (energy(guess, nullptr, workers) <= most) return;
         for (std::size_t i = 0; i < guess.size(); ++i) guess[i] = (trial_[i] + guess[i]) * 0.5;
     }
@@ -182,8 +175,9 @@ double ImplicitStep::search(std::span<Vec3d> places, const ContactEnergy* contac
         for (std::size_t i = 0; i < masses_.size(); ++i)
             trial_[i] = places[i] + direction_[i].to_double() * share;
         found = this->energy(trial_, contacts, workers);
-        const bool is_rounding = std::abs(found - energy) < kEnergyRounding * std::abs(energy);
-        if (found <= energy + kSufficientDecrease * share * slope || is_rounding || trial == kMostHalvings)
+        const bool is_rounding = std::abs(found - energy) < threshold::kEnergyRounding * std::abs(energy);
+        if (found <= energy + threshold::kSufficientDecrease * share * slope || is_rounding ||
+            trial == threshold::kMostShorterTrials)
             break;
         // The least of the parabola through both energies and the slope, within bounds.
         const double least = -slope * share * share / (2 * (found - energy - slope * share));

@@ -1,9 +1,9 @@
 #pragma once
 
-#include "mechanics/body_translations.hpp"
-#include "mechanics/conjugate_gradients.hpp"
 #include "mechanics/elastic_model.hpp"
-#include "mechanics/multigrid.hpp"
+#include "mechanics/linear/body_translations.hpp"
+#include "mechanics/linear/conjugate_gradients.hpp"
+#include "mechanics/linear/multigrid.hpp"
 
 #include <cstdint>
 #include <span>

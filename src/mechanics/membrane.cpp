@@ -1,17 +1,12 @@
 #include "mechanics/membrane.hpp"
 
+#include "mechanics/thresholds.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
 namespace echinus {
-
-namespace {
-
-/// A direction compressed to nothing has no normal; its extension is -1 to rounding all the same.
-constexpr double kLeastLength = 1e-9;
-
-} // namespace
 
 float set_rest_shape(ElasticTriangle& triangle, const std::array<std::array<double, 2>, 3>& corners) {
     const auto edge = [&](std::size_t k, std::size_t axis) { return corners[k][axis] - corners[0][axis]; };
@@ -66,8 +61,8 @@ Membrane::State Membrane::state_of(std::uint32_t number, Places places) const {
         state.warp += place * double{triangle.warp[k]};
         state.weft += place * double{triangle.weft[k]};
     }
-    state.warp_length = std::max(length(state.warp), kLeastLength);
-    state.weft_length = std::max(length(state.weft), kLeastLength);
+    state.warp_length = std::max(length(state.warp), threshold::kLeastExtension);
+    state.weft_length = std::max(length(state.weft), threshold::kLeastExtension);
     state.shear = dot(state.warp, state.weft);
     const double share = double{triangle.damping} * inverse_step_;
     state.stiffening = 1 + share;

@@ -1,5 +1,6 @@
 #include "simulation/newton_solver.hpp"
 
+#include "mechanics/thresholds.hpp"
 #include "simulation/contact/carry_field.hpp"
 #include "simulation/contact/thresholds.hpp"
 #include "simulation/stopwatch.hpp"
@@ -14,9 +15,6 @@
 namespace echinus {
 
 namespace {
-
-/// Share of the tolerance of particles that the displacements of whole bodies have.
-constexpr double kBodyTolerance = 0.1;
 
 double mean_edge_of(const Deformable& deformable) {
     return double{mean_edge_length(elements_of(deformable), deformable.positions)};
@@ -298,7 +296,7 @@ void NewtonSolver::minimise(std::span<Vec3d> places, double seconds) {
 bool NewtonSolver::are_bodies_balanced(Places places) {
     const Stopwatch stopwatch(profile.constraint_seconds);
     return step_.imbalance(places, contacts_->energy(), workers_) <
-           kBodyTolerance * options.newton_tolerance * mean_edge_;
+           threshold::kBodyTolerance * options.newton_tolerance * mean_edge_;
 }
 
 double NewtonSolver::fastest() const {

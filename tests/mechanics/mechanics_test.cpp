@@ -1,8 +1,8 @@
 // Energies against differences of themselves, the linear solver against what it solves.
 
-#include "mechanics/conjugate_gradients.hpp"
 #include "mechanics/elastic_model.hpp"
 #include "mechanics/implicit_step.hpp"
+#include "mechanics/linear/conjugate_gradients.hpp"
 #include "support/random_points.hpp"
 
 #include <echinus/soft_body.hpp>

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "geometry/workers.hpp"
-#include "mechanics/block.hpp"
+#include "mechanics/linear/block.hpp"
 
 #include <array>
 #include <cstddef>

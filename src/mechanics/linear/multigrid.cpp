@@ -1,4 +1,6 @@
-#include "mechanics/multigrid.hpp"
+#include "mechanics/linear/multigrid.hpp"
+
+#include "mechanics/thresholds.hpp"
 
 #include <algorithm>
 #include <array>
@@ -10,14 +12,8 @@ namespace echinus {
 
 namespace {
 
-/// A level of so many nodes or fewer is solved directly.
-constexpr std::size_t kMostLastNodes = 64;
 /// Coarse rows that one thread computes at once. A fine row near the border of two pieces is computed twice.
 constexpr std::size_t kCoarseRowsPerPiece = 256;
-/// Of the trace, added to the diagonal of coarse matrices, which may be singular: of a body that nothing
-/// holds, in float.
-constexpr float kRegularisation = 1e-6F;
-
 /// Rows of a sweep that see each other's new values.
 constexpr std::size_t kRowsPerSlab = kRowsPerPiece;
 
@@ -154,7 +150,7 @@ void Multigrid::add_level(const BlockMatrix& fine, std::span<const Vec3d> places
     for (auto* vector : {&level.right_side, &level.solution, &level.residual, &level.before})
         vector->resize(fine.row_count());
     levels_.push_back(std::move(level));
-    if (fine.row_count() <= kMostLastNodes) return;
+    if (fine.row_count() <= threshold::kMostLastNodes) return;
     Transfer transfer;
     transfer.coarsening = coarsen(fine.blocks, places);
     // A graph without edges has as many coarse nodes: it is diagonal, and sweeps solve it.
@@ -249,7 +245,7 @@ void Multigrid::product(const BlockMatrix& fine, std::span<const std::uint8_t> i
     for (std::size_t row = 0; row < coarse.row_count(); ++row) {
         Block& diagonal = coarse.blocks.values[coarse.diagonal[row]];
         const float trace = diagonal.trace();
-        diagonal.add_identity(trace > 0 ? kRegularisation * trace : 1);
+        diagonal.add_identity(trace > 0 ? threshold::kRegularisation * trace : 1);
     }
 }
 
@@ -315,7 +311,7 @@ void Multigrid::set(BlockMatrix& matrix, std::span<const std::uint8_t> is_held, 
 
 void Multigrid::factorise_last(const Workers& workers) {
     const BlockMatrix& a = matrix(levels_.size() - 1);
-    if (a.row_count() > kMostLastNodes) return;
+    if (a.row_count() > threshold::kMostLastNodes) return;
     const std::size_t size = 3 * a.row_count();
     ScratchVector<float> dense(size * size, workers.scratch());
     const auto add = [&](std::size_t row, std::uint32_t column, const Block& block) {
@@ -350,7 +346,7 @@ void Multigrid::solve_last(std::span<const Float4> b, std::span<Float4> x) {
 void Multigrid::cycle(std::size_t level, std::span<const Float4> b, std::span<Float4> x,
                       const Workers& workers) {
     const BlockMatrix& a = matrix(level);
-    if (a.row_count() <= kMostLastNodes) return solve_last(b, x);
+    if (a.row_count() <= threshold::kMostLastNodes) return solve_last(b, x);
     sweep_from_zero(a, b, x, workers);
     Level& here = levels_[level];
     if (level + 1 < levels_.size()) {

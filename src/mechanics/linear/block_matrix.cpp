@@ -1,4 +1,4 @@
-#include "mechanics/block_matrix.hpp"
+#include "mechanics/linear/block_matrix.hpp"
 
 #include <algorithm>
 #include <numeric>

@@ -1,8 +1,8 @@
 #pragma once
 
-#include "mechanics/block_matrix.hpp"
-#include "mechanics/cholesky.hpp"
-#include "mechanics/coarsening.hpp"
+#include "mechanics/linear/block_matrix.hpp"
+#include "mechanics/linear/cholesky.hpp"
+#include "mechanics/linear/coarsening.hpp"
 
 #include <cstddef>
 #include <cstdint>

@@ -1,4 +1,4 @@
-#include "mechanics/conjugate_gradients.hpp"
+#include "mechanics/linear/conjugate_gradients.hpp"
 
 #include <algorithm>
 #include <numeric>

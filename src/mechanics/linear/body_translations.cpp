@@ -1,4 +1,4 @@
-#include "mechanics/body_translations.hpp"
+#include "mechanics/linear/body_translations.hpp"
 
 #include "geometry/union_find.hpp"
 #include "mechanics/small_matrix.hpp"

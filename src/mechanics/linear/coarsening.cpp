@@ -1,6 +1,7 @@
-#include "mechanics/coarsening.hpp"
+#include "mechanics/linear/coarsening.hpp"
 
-#include "mechanics/cholesky.hpp"
+#include "mechanics/linear/cholesky.hpp"
+#include "mechanics/thresholds.hpp"
 
 #include <algorithm>
 #include <array>
@@ -11,16 +12,6 @@
 namespace echinus {
 
 namespace {
-
-/// Edges between coarse nodes; more make fewer of them, which represent less of what is smooth.
-constexpr std::uint32_t kSpacing = 2;
-/// Coarse nodes that a node follows.
-constexpr std::size_t kMostParents = 4;
-/// Weights below it are left out.
-constexpr double kLeastWeight = 0.02;
-/// Of the least squares, relative to the square of the distance to the farthest parent: in a direction in
-/// which the parents do not extend (out of a sheet), what is linear is left out.
-constexpr double kFlatness = 1e-3;
 
 /// The nodes around one, by breadth-first search.
 class Neighbourhood {
@@ -72,7 +63,7 @@ std::vector<double> weights_at(const Vec3d& place, std::span<const Parent> paren
     for (const Parent& parent : parents) {
         const Vec3d d = (places[parent.node] - place) * scale;
         const std::array<double, kTerms> row{1, d.x, d.y, d.z};
-        const double distance_sq = dot(d, d) + kFlatness;
+        const double distance_sq = dot(d, d) + threshold::kFlatness;
         const double importance = 1 / (distance_sq * distance_sq);
         std::array<double, kTerms> weighted{};
         for (std::size_t i = 0; i < kTerms; ++i) {
@@ -81,7 +72,7 @@ std::vector<double> weights_at(const Vec3d& place, std::span<const Parent> paren
         }
         rows.push_back(weighted);
     }
-    for (std::size_t i = 1; i < kTerms; ++i) normal_matrix[i * kTerms + i] += kFlatness;
+    for (std::size_t i = 1; i < kTerms; ++i) normal_matrix[i * kTerms + i] += threshold::kFlatness;
     Cholesky<double> normal;
     normal.factorise(kTerms, normal_matrix);
     std::array<double, kTerms> at_node{1, 0, 0, 0};
@@ -106,7 +97,8 @@ std::vector<std::uint32_t> choose_coarse(const Rows<Block>& graph, Neighbourhood
     for (std::uint32_t node = 0; node < graph.row_count(); ++node) {
         if (is_covered[node]) continue;
         numbers[node] = count++;
-        for (const std::uint32_t near : neighbourhood.around(node, kSpacing)) is_covered[near] = true;
+        for (const std::uint32_t near : neighbourhood.around(node, threshold::kCoarseSpacing))
+            is_covered[near] = true;
     }
     return numbers;
 }
@@ -125,16 +117,16 @@ Coarsening coarsen(const Rows<Block>& graph, std::span<const Vec3d> places) {
             result.parents.values.push_back(1);
         } else {
             parents.clear();
-            for (const std::uint32_t near : neighbourhood.around(node, 2 * kSpacing)) {
+            for (const std::uint32_t near : neighbourhood.around(node, 2 * threshold::kCoarseSpacing)) {
                 if (numbers[near] == BlockMatrix::kNone) continue;
                 const Vec3d d = places[near] - places[node];
                 parents.push_back({dot(d, d), near});
             }
             std::sort(parents.begin(), parents.end());
-            if (parents.size() > kMostParents) parents.resize(kMostParents);
+            if (parents.size() > threshold::kMostParents) parents.resize(threshold::kMostParents);
             const std::vector<double> weights = weights_at(places[node], parents, places);
             for (std::size_t i = 0; i < parents.size(); ++i) {
-                if (std::abs(weights[i]) < kLeastWeight) continue;
+                if (std::abs(weights[i]) < threshold::kLeastParentWeight) continue;
                 result.parents.columns.push_back(numbers[parents[i].node]);
                 result.parents.values.push_back(static_cast<float>(weights[i]));
             }

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "mechanics/block_matrix.hpp"
 #include "mechanics/energy_term.hpp"
+#include "mechanics/linear/block_matrix.hpp"
 
 #include <cstdint>
 #include <span>

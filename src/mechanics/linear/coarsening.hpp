@@ -1,6 +1,6 @@
 #pragma once
 
-#include "mechanics/block_matrix.hpp"
+#include "mechanics/linear/block_matrix.hpp"
 
 #include <cstdint>
 #include <span>

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "mechanics/block_matrix.hpp"
-#include "mechanics/multigrid.hpp"
+#include "mechanics/linear/block_matrix.hpp"
+#include "mechanics/linear/multigrid.hpp"
 
 #include <cstdint>
 #include <span>
