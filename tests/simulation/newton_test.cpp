@@ -175,6 +175,13 @@ TEST(Newton, ClothFallsOnABallAndBecomesSlowWithHardlyAnyStrain) {
     EXPECT_TRUE(simulation.at_rest());
 }
 
+TEST(Newton, AThinSheetWhoseMiddleLiesOnThePoleOfABallHangsDownAroundIt) {
+    const TriangleMesh ball = make_sphere(0.3, 24, 12); // as symmetrical as the sheet
+    Simulation simulation(sheet_at(0.4, 1, 11), colliders_of({ball}), newton_contact(0));
+    expect_nothing_meets(simulation, {ball}, 60);
+    EXPECT_LT(simulation.positions().front().z, 0);
+}
+
 TEST(Newton, LayersThatFallOnABoxLieOnEachOther) {
     std::vector<Deformable> layers;
     for (int i = 0; i < 3; ++i) layers.push_back(sheet_at(0.51 + 0.012 * i, 0.4, 7));

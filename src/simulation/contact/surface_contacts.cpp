@@ -282,13 +282,16 @@ SurfaceContacts::Stopped SurfaceContacts::mark_stopped(Places goals, Places ends
 
 /// Goes from the safe state towards goals as far as the planes between the pairs allow. Bodies of which any
 /// particle is stopped go less far, where too little room or ever more pairs are found, or where what is
-/// stopped strains what goes on beside it so that energy rises, but for what all of a body have in common; at
-/// last what is not held stays, and the others go around it.
+/// stopped strains what goes on beside it so that energy rises: first but for what all of a body have in
+/// common, and then as a whole, since what lies on something is in the way of that; at last what is not held
+/// stays, and the others go around it.
 /// @param places  in: the goals. Out: the new safe state, whose pairs are not measured yet
 /// @return how many particles were stopped
 std::size_t SurfaceContacts::go_towards(std::span<Vec3d> places, const StepEnergy& energy,
                                         const Workers& workers) {
-    constexpr int kLast = 2 * threshold::kMostHalvings;
+    constexpr int kFirstOfAll = threshold::kMostHalvings,
+                  kFirstWithout = kFirstOfAll + threshold::kMostHalvingsOfAll,
+                  kLast = kFirstWithout + threshold::kMostHalvings;
     Scratch& scratch = workers.scratch();
     const ScratchVector<Vec3d> wanted(places.begin(), places.end(), scratch);
     const ScratchVector<Vec3d> common = common_displacements(wanted, workers);
@@ -298,10 +301,13 @@ std::size_t SurfaceContacts::go_towards(std::span<Vec3d> places, const StepEnerg
     std::optional<double> most_energy;
     std::size_t most_stopped = 0;
     for (int halvings = 0;; ++halvings) {
-        const double share = halvings < threshold::kMostHalvings ? std::ldexp(1.0, -halvings) : 0;
+        const bool keeps_common = halvings < kFirstOfAll;
+        const double share = keeps_common               ? std::ldexp(1.0, -halvings)
+                             : halvings < kFirstWithout ? std::ldexp(0.5, kFirstOfAll - halvings)
+                                                        : 0;
         for (std::size_t i = 0; i < goals.size(); ++i) {
             if (is_held_[i] != 0 || is_stopped[bodies_[i]] == 0) continue;
-            const Vec3d kept = share > 0 ? common[bodies_[i]] : Vec3d{};
+            const Vec3d kept = keeps_common ? common[bodies_[i]] : Vec3d{};
             goals[i] = from[i] + kept + (wanted[i] - from[i] - kept) * share;
         }
         std::copy(goals.begin(), goals.end(), places.begin());
@@ -309,6 +315,8 @@ std::size_t SurfaceContacts::go_towards(std::span<Vec3d> places, const StepEnerg
         const Stopped stopped = mark_stopped(goals, places, is_stopped, workers);
         most_stopped = std::max(most_stopped, stopped.count);
         if (is_safe && most_stopped == 0) break;
+        // Less of all helps against strain. Where there is too little room it takes long, and does not.
+        if (!is_safe && share > 0 && halvings + 1 >= kFirstOfAll) halvings = kFirstWithout - 1;
         if (share == 0) {
             if (halvings == kLast || (is_safe && !stopped.is_any_new)) break;
             if (!stopped.is_any_new || halvings + 1 == kLast)

@@ -62,8 +62,8 @@ inline constexpr float kLeastGap = 1.0F / (1 << 19);
 inline constexpr float kPushedTo = 0.9F;
 inline constexpr int kMostPushingRounds = 64;
 /// Rounds in which ends that were not expected are looked at anew, and times that displacements are halved
-/// where those do not suffice; then nothing moves that is not held.
-inline constexpr int kMostListingRounds = 8, kMostHalvings = 4;
+/// where those do not suffice: within bodies, and then of whole bodies. Then nothing moves that is not held.
+inline constexpr int kMostListingRounds = 8, kMostHalvings = 4, kMostHalvingsOfAll = 6;
 /// Mean edges: so far a particle may end from its goal before planes are measured anew on the way there; and
 /// how often that is done. They turn with what passes along them.
 inline constexpr float kMostMissed = 0.1F;
