@@ -77,28 +77,42 @@ std::uint32_t BlockMatrix::find_multiple(std::uint32_t row, std::uint32_t column
 }
 
 void BlockMatrix::set_contacts() {
-    contact_order_.resize(added_contacts_.size());
-    std::iota(contact_order_.begin(), contact_order_.end(), 0U);
-    std::sort(contact_order_.begin(), contact_order_.end(), [&](std::uint32_t a, std::uint32_t b) {
-        const Coupling &at_a = added_contacts_[a].at, &at_b = added_contacts_[b].at;
-        return at_a != at_b ? at_a < at_b : a < b;
-    });
-    contacts.first.assign(row_count() + 1, 0);
     contacts.columns.clear();
     contacts.values.clear();
-    const Coupling* previous = nullptr;
-    for (const std::uint32_t number : contact_order_) {
-        const AddedContact& entry = added_contacts_[number];
-        if (previous != nullptr && *previous == entry.at) {
-            contacts.values.back() += entry.value;
-        } else {
-            ++contacts.first[entry.at[0] + 1];
-            contacts.columns.push_back(entry.at[1]);
-            contacts.values.push_back(entry.value);
+    order_contacts_by_rows();
+    for (std::size_t row = 0; row < row_count(); ++row) {
+        const auto begin = contact_order_.begin() + contacts.first[row],
+                   end = contact_order_.begin() + contacts.first[row + 1];
+        std::sort(begin, end, [&](std::uint32_t a, std::uint32_t b) {
+            const std::uint32_t of_a = added_contacts_[a].at[1], of_b = added_contacts_[b].at[1];
+            return of_a != of_b ? of_a < of_b : a < b;
+        });
+        const std::size_t first = contacts.columns.size();
+        for (auto number = begin; number != end; ++number) {
+            const AddedContact& entry = added_contacts_[*number];
+            if (contacts.columns.size() > first && contacts.columns.back() == entry.at[1]) {
+                contacts.values.back() += entry.value;
+            } else {
+                contacts.columns.push_back(entry.at[1]);
+                contacts.values.push_back(entry.value);
+            }
         }
-        previous = &entry.at;
+        contacts.first[row] = static_cast<std::uint32_t>(first);
     }
+    contacts.first[row_count()] = static_cast<std::uint32_t>(contacts.columns.size());
+}
+
+/// Sets `contacts.first` to where the entries that were added to each row begin in their order.
+void BlockMatrix::order_contacts_by_rows() {
+    contacts.first.assign(row_count() + 1, 0);
+    for (const AddedContact& entry : added_contacts_) ++contacts.first[entry.at[0] + 1];
     std::partial_sum(contacts.first.begin(), contacts.first.end(), contacts.first.begin());
+    contact_order_.resize(added_contacts_.size());
+    // Each row's entry holds where its next one goes, and so ends where the next row begins.
+    for (std::uint32_t number = 0; number < added_contacts_.size(); ++number)
+        contact_order_[contacts.first[added_contacts_[number].at[0]]++] = number;
+    std::copy_backward(contacts.first.begin(), contacts.first.end() - 1, contacts.first.end());
+    contacts.first.front() = 0;
 }
 
 void BlockMatrix::clear() {

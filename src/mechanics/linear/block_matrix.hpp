@@ -77,6 +77,8 @@ class BlockMatrix {
         Coupling at;
         Block value;
     };
+    void order_contacts_by_rows();
+
     std::vector<AddedContact> added_contacts_;
     std::vector<std::uint32_t> contact_order_;
 };
