@@ -210,7 +210,7 @@ struct SimulationOptions {
     ClothMaterial material{}; ///< Newton
     /// Newton: at most so many steps of Newton's method in each frame, or part of one; fewer where it has
     /// converged. Fewer than two leave contacts unresolved.
-    std::uint32_t newton_step_count = 8;
+    std::uint32_t newton_step_count = 4;
     /// Newton: a step of Newton's method has converged if the energy that it gains could move particles no
     /// farther than this in the root mean square; share of the mean edge length.
     double newton_tolerance = 5e-4;

@@ -55,23 +55,31 @@ void ImplicitStep::begin(const Motion& motion, std::span<const Vec3d> accelerati
     }
 }
 
-double ImplicitStep::energy(Places places, const ContactEnergy* contacts, const Workers& workers) const {
-    double energy = sum_of(masses_.size(), workers, [&](std::size_t i) {
+double ImplicitStep::kinetic_energy(Places places, const Workers& workers) const {
+    return sum_of(masses_.size(), workers, [&](std::size_t i) {
         if (is_held_[i] != 0) return 0.0;
         const Vec3d away = places[i] - inertial_[i];
         return inertia_[i] / 2 * dot(away, away);
     });
-    energy += elastic_.energy(places, workers);
+}
+
+double ImplicitStep::energy(Places places, const ContactEnergy* contacts, const Workers& workers) const {
+    double energy = kinetic_energy(places, workers) + elastic_.energy(places, workers);
     if (contacts != nullptr) energy += contacts->energy(places, workers);
     return energy;
 }
 
-void ImplicitStep::add_derivatives(Places places, const ContactEnergy* contacts, const Workers& workers) {
+/// Sets the gradient and the Hessian to those of inertia.
+void ImplicitStep::begin_derivatives(Places places) {
     hessian_.clear();
     for (std::size_t i = 0; i < masses_.size(); ++i) {
         gradient_[i] = (places[i] - inertial_[i]) * inertia_[i];
         hessian_.blocks.values[hessian_.diagonal[i]].add_identity(static_cast<float>(inertia_[i]));
     }
+}
+
+void ImplicitStep::add_derivatives(Places places, const ContactEnergy* contacts, const Workers& workers) {
+    begin_derivatives(places);
     elastic_.add_derivatives(places, gradient_, &hessian_, workers);
     if (contacts != nullptr) contacts->add_derivatives(places, gradient_, &hessian_, workers);
     hold(workers);
@@ -96,11 +104,23 @@ std::vector<double> ImplicitStep::stiffnesses(Places places, const Workers& work
     return stiffnesses;
 }
 
-double ImplicitStep::imbalance(Places places, const ContactEnergy& contacts, const Workers& workers) const {
-    ScratchVector<Vec3d> forces(masses_.size(), workers.scratch());
-    for (std::size_t i = 0; i < masses_.size(); ++i) forces[i] = (places[i] - inertial_[i]) * inertia_[i];
-    contacts.add_derivatives(places, forces, nullptr, workers);
-    return translations_.imbalance(forces, inertia_, workers);
+bool ImplicitStep::balance(std::span<Vec3d> places, const ContactEnergy& contacts, double tolerance,
+                           const Workers& workers) {
+    const auto energy_at = [&](Places at) {
+        return kinetic_energy(at, workers) + contacts.energy(at, workers);
+    };
+    double energy = energy_at(places);
+    for (std::uint32_t step = 0;; ++step) {
+        begin_derivatives(places);
+        contacts.add_derivatives(places, gradient_, &hessian_, workers);
+        if (translations_.imbalance(gradient_, inertia_, workers) < tolerance) return true;
+        if (step == threshold::kMostBalancingSteps) return false;
+        std::fill(direction_.begin(), direction_.end(), Float4{});
+        for (std::size_t i = 0; i < masses_.size(); ++i) right_side_[i] = Float4(-gradient_[i]);
+        translations_.correct(hessian_, right_side_, direction_, workers);
+        std::uint32_t halvings = 0;
+        search(places, energy, energy_at, halvings);
+    }
 }
 
 /// Takes the particles that are held out of the system: their rows and columns are those of a multiple of the
@@ -147,7 +167,8 @@ void ImplicitStep::calm(Places start, std::span<Vec3d> guess, const Workers& wor
 StepReport ImplicitStep::solve(std::span<Vec3d> places, const ContactEnergy* contacts,
                                const StepBudget& budget, const Workers& workers) {
     StepReport report;
-    double energy = this->energy(places, contacts, workers);
+    const auto energy_at = [&](Places at) { return this->energy(at, contacts, workers); };
+    double energy = energy_at(places);
     while (report.newton_steps < budget.newton_steps) {
         add_derivatives(places, contacts, workers);
         multigrid_.set(hessian_, is_held_, workers);
@@ -155,26 +176,31 @@ StepReport ImplicitStep::solve(std::span<Vec3d> places, const ContactEnergy* con
         report.linear_iterations += linear_.solve(hessian_, multigrid_, right_side_, direction_,
                                                   budget.linear_iterations, budget.linear_tolerance, workers);
         translations_.correct(hessian_, right_side_, direction_, workers);
-        double slope = 0;
-        for (std::size_t i = 0; i < masses_.size(); ++i)
-            slope += dot(gradient_[i], direction_[i].to_double());
         ++report.newton_steps;
-        const double share = search(places, contacts, slope, energy, report, workers);
+        const double share = search(places, energy, energy_at, report.halvings);
         // The Hessian of the energy is nowhere less than that of inertia.
-        report.last_move = share * std::sqrt(std::max(-slope, 0.0) / total_inertia_);
+        report.last_move = share * std::sqrt(std::max(-slope(), 0.0) / total_inertia_);
         if (report.last_move < budget.tolerance) break;
     }
     return report;
 }
 
-/// Goes so far along the direction that the energy falls. @return the share of it
-double ImplicitStep::search(std::span<Vec3d> places, const ContactEnergy* contacts, double slope,
-                            double& energy, StepReport& report, const Workers& workers) {
+/// The derivative of the energy along the direction.
+double ImplicitStep::slope() const {
+    double slope = 0;
+    for (std::size_t i = 0; i < masses_.size(); ++i) slope += dot(gradient_[i], direction_[i].to_double());
+    return slope;
+}
+
+template <typename EnergyAt>
+double ImplicitStep::search(std::span<Vec3d> places, double& energy, const EnergyAt& energy_at,
+                            std::uint32_t& halvings) {
+    const double slope = this->slope();
     double share = 1, found = 0;
     for (std::uint32_t trial = 0;; ++trial) {
         for (std::size_t i = 0; i < masses_.size(); ++i)
             trial_[i] = places[i] + direction_[i].to_double() * share;
-        found = this->energy(trial_, contacts, workers);
+        found = energy_at(trial_);
         const bool is_rounding = std::abs(found - energy) < threshold::kEnergyRounding * std::abs(energy);
         if (found <= energy + threshold::kSufficientDecrease * share * slope || is_rounding ||
             trial == threshold::kMostShorterTrials)
@@ -182,7 +208,7 @@ double ImplicitStep::search(std::span<Vec3d> places, const ContactEnergy* contac
         // The least of the parabola through both energies and the slope, within bounds.
         const double least = -slope * share * share / (2 * (found - energy - slope * share));
         share = std::min(share / 2, std::max(share / 10, least));
-        ++report.halvings;
+        ++halvings;
     }
     energy = found;
     std::copy(trial_.begin(), trial_.end(), places.begin());

@@ -39,8 +39,8 @@ class ContactEnergy {
 /// The bound of a step's cost. It ends earlier where it has converged.
 struct StepBudget {
     std::uint32_t newton_steps = 2;
-    std::uint32_t linear_iterations = 16; ///< at most, of each
-    double linear_tolerance = 1e-2;       ///< of the residual, relative
+    std::uint32_t linear_iterations = 8; ///< at most, of each
+    double linear_tolerance = 1e-2;      ///< of the residual, relative
     double tolerance = 1e-6; ///< a Newton step that moves particles less than this is the last, in the
                              ///< root mean square that is possible by the energy it gains; length
 };
@@ -82,9 +82,14 @@ class ImplicitStep {
     /// held, and what the solver has left.
     ScratchVector<Vec3d> missing_forces(Places places, const ContactEnergy* contacts,
                                         const Workers& workers) const;
-    /// How far a body of which nothing is held would go to balance the forces on it, as if inertia alone kept
-    /// it; the farthest of all. Length
-    double imbalance(Places places, const ContactEnergy& contacts, const Workers& workers) const;
+    /// Translates whole bodies of which nothing is held to where contacts balance their inertia, by Newton's
+    /// method in those translations alone. No elastic force acts against a translation, so whatever the
+    /// solver leaves of one stays as momentum, while the material pulls back what is left within a body: so
+    /// this is solved more exactly than all else, and far faster.
+    /// @param tolerance  how far a body may go, as if inertia alone kept it; length
+    /// @return whether all are in balance
+    bool balance(std::span<Vec3d> places, const ContactEnergy& contacts, double tolerance,
+                 const Workers& workers);
     /// The elastic part alone, without dissipation in progress.
     const ElasticModel& elastic() const { return elastic_; }
     std::span<const double> masses() const { return masses_; }
@@ -96,10 +101,17 @@ class ImplicitStep {
     std::size_t level_count() const { return multigrid_.level_count(); }
 
   private:
+    /// Of inertia alone.
+    double kinetic_energy(Places places, const Workers& workers) const;
+    void begin_derivatives(Places places);
     void add_derivatives(Places places, const ContactEnergy* contacts, const Workers& workers);
     void hold(const Workers& workers);
-    double search(std::span<Vec3d> places, const ContactEnergy* contacts, double slope, double& energy,
-                  StepReport& report, const Workers& workers);
+    double slope() const;
+    /// Goes so far along the direction that the energy falls. @param energy  in: at the places. Out: at the
+    /// new ones. @param energy_at  gives that of other places @return the share of the direction
+    template <typename EnergyAt>
+    double search(std::span<Vec3d> places, double& energy, const EnergyAt& energy_at,
+                  std::uint32_t& halvings);
 
     std::vector<double> masses_;
     ElasticModel elastic_;

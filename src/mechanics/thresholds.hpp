@@ -22,6 +22,8 @@ inline constexpr std::uint32_t kMostHalvingsOfGuess = 24;
 /// Share of the tolerance of particles that the displacements of whole bodies have. More leaves more of the
 /// forces on a body as momentum.
 inline constexpr double kBodyTolerance = 0.1;
+/// Newton's steps in the translations of whole bodies, after each of all particles. Fewer leave momentum.
+inline constexpr std::uint32_t kMostBalancingSteps = 8;
 
 // ---- The materials ----
 

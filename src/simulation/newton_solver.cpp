@@ -272,14 +272,17 @@ void NewtonSolver::minimise(std::span<Vec3d> places, double seconds) {
     budget.newton_steps = 1;
     for (std::uint32_t newton = 0; newton < newton_steps; ++newton) {
         double last_move = 0;
+        bool is_balanced = false;
         {
             const Stopwatch stopwatch(profile.constraint_seconds);
             last_move = step_.solve(places, &contacts_->energy(), budget, workers_).last_move;
+            is_balanced = step_.balance(places, contacts_->energy(),
+                                        threshold::kBodyTolerance * budget.tolerance, workers_);
         }
         std::size_t stopped = 0;
         contact([&] { stopped = contacts_->advance(places, energy, workers_); });
         if (newton + 1 == newton_steps) profile.truncated_count += stopped;
-        if (last_move < budget.tolerance && stopped == 0 && are_bodies_balanced(places)) break;
+        if (last_move < budget.tolerance && stopped == 0 && is_balanced) break;
     }
     contact([&] {
         contacts_->put_outside(places, energy, workers_);
@@ -290,13 +293,6 @@ void NewtonSolver::minimise(std::span<Vec3d> places, double seconds) {
     });
     profile.contact_count += contacts_->pushing_count(places);
     profile.measured_pair_count += contacts_->pair_count();
-}
-
-/// A whole body keeps what the solver leaves of the forces on it, so that has to be far less than within one.
-bool NewtonSolver::are_bodies_balanced(Places places) {
-    const Stopwatch stopwatch(profile.constraint_seconds);
-    return step_.imbalance(places, contacts_->energy(), workers_) <
-           threshold::kBodyTolerance * options.newton_tolerance * mean_edge_;
 }
 
 double NewtonSolver::fastest() const {

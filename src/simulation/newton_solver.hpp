@@ -40,7 +40,6 @@ class NewtonSolver : public Solver {
     ScratchVector<Vec3d> exact_start() const;
     ScratchVector<Vec3d> guess(std::span<const Vec3d> start, double seconds) const;
     void minimise(std::span<Vec3d> places, double seconds);
-    bool are_bodies_balanced(Places places);
     void publish();
     void publish_places();
 

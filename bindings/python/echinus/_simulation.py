@@ -205,7 +205,7 @@ class Simulation:
         time_step: float = 1 / 60,
         solver: Literal["newton", "jakobsen"] = "newton",
         iteration_count: int = 10,
-        newton_step_count: int = 8,
+        newton_step_count: int = 4,
         rest_frame_count: int = 60,
         rest_distance: float = 0.001,
         rest_speed: float = 0.1,

@@ -647,7 +647,7 @@ export interface SceneDescription {
     iterations?: number;
     /**
      * `newton` only: at most so many steps of Newton's method in a frame; fewer where it has converged (1 to 1000).
-     * Default: 8.
+     * Default: 4.
      */
     newton_steps?: number;
     /**
