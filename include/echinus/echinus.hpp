@@ -17,6 +17,7 @@
 #include <echinus/intersections.hpp>
 #include <echinus/map_file.hpp>
 #include <echinus/mesh.hpp>
+#include <echinus/particle_collision.hpp>
 #include <echinus/simulation.hpp>
 #include <echinus/soft_body.hpp>
 #include <echinus/surface_queries.hpp>

@@ -88,6 +88,8 @@ struct Rotation {
     Vec3d vector() const;
     Rotation inverse() const { return {w, -x, -y, -z}; }
     Rotation normalised() const;
+
+    friend constexpr bool operator==(const Rotation&, const Rotation&) = default;
 };
 /// First `b`, then `a`.
 Rotation operator*(const Rotation& a, const Rotation& b);
@@ -103,6 +105,8 @@ struct RigidTransform {
     Vec3d to_local(const Vec3d& point_world) const {
         return rotation.inverse().apply(point_world - translation);
     }
+
+    friend constexpr bool operator==(const RigidTransform&, const RigidTransform&) = default;
 };
 
 /// A view of `size` values of type T that lie `stride` bytes apart, for instance the positions in an array of

@@ -56,6 +56,7 @@ struct Particles {
     PointArrays frame_start;     ///< where they were when the frame began
     std::vector<float> mobility; ///< 1, or 0 for a particle that is pinned
 
+    Particles() = default;
     explicit Particles(const Deformable& deformable) {
         for (const float inverse_mass : deformable.inverse_masses)
             mobility.push_back(inverse_mass == 0 ? 0.0F : 1.0F);

@@ -4,6 +4,7 @@
 
 #include <echinus/error.hpp>
 #include <echinus/exact_map.hpp>
+#include <echinus/particle_collision.hpp>
 #include <echinus/simulation.hpp>
 
 #include <gtest/gtest.h>
@@ -124,6 +125,31 @@ TEST(Step, AllocatesNothingOnceItHasSeenItsLargest) {
     for (int i = 0; i < 30; ++i) simulation.step();
     EXPECT_EQ(allocation_count, before);
     EXPECT_GT(simulation.profile().contact_count, 0u);
+}
+
+TEST(ParticleCollision, AllocatesNothingAfterTheFirstStepBesideAnyKindOfMap) {
+    ParticleCollision collision(
+        {{.map = ExactMap::build(make_box({1.5, 1.5, 0.001}))},
+         {.map = DistanceMap::build(make_box({1, 1, 1})), .pose = {Rotation{}, {3, 0, 0}}},
+         {.map = std::make_shared<test::AnalyticBall>(0.3F)}},
+        0.01);
+    std::vector<Vec3f> positions, velocities(400);
+    for (int i = 0; i < 400; ++i) positions.push_back({0.01F * i - 2, 0.1F * (i % 7), 0.5F});
+    std::vector<Vec3f> previous = positions;
+    std::size_t before = 0, corrected_count = 0;
+    for (int n = 0; n < 100; ++n) {
+        previous = positions;
+        for (std::size_t i = 0; i < 400; ++i) {
+            velocities[i].z -= 0.1F;
+            positions[i] += velocities[i] * (1.0F / 60);
+        }
+        if (n == 50) previous[7].z = positions[7].z = 1; // begins anew
+        collision.set_collider_pose(0, {Rotation::about({0, 1, 0}, 0.1 * n), {}});
+        corrected_count += collision.correct({previous, positions, velocities}, 1.0 / 60).size();
+        if (n == 0) before = allocation_count;
+    }
+    EXPECT_EQ(allocation_count, before);
+    EXPECT_GT(corrected_count, 400u);
 }
 
 TEST(RestoreState, TakesMemoryForTheBytesThatAreThereWhateverCountsSay) {

@@ -22,12 +22,19 @@ class Collision {
     virtual ~Collision() = default;
     virtual std::unique_ptr<Collision> clone() const = 0;
 
+    /// Between two frames: these particles begin anew where the frame that comes starts them.
+    /// @pre the collider lets none of them through
+    virtual void restart(std::span<const std::uint32_t> /*restarted*/, const Particles&) {}
+
     /// @param collider       where the frame leads it
     /// @param previous_pose  from where it comes
     virtual void begin_frame(const Collider& collider, const RigidTransform& previous_pose) = 0;
     /// One relaxation of all particles.
     /// @param workers  may share them
     virtual void relax(Particles& particles, SimulationProfile& profile, const Workers& workers) = 0;
+    /// The part of a motion in this frame that a particle keeps after an impact: nothing into the surface on
+    /// which it is now, and friction along it for what was stopped.
+    virtual Vec3d without_approach(std::size_t i, const Particles& particles, const Vec3d& motion) const = 0;
 
     /// Lists the particles that are not proven free where they are; pinned ones are never among them.
     virtual std::span<const std::uint32_t> find_unproven(const Particles&) { return {}; }

@@ -38,12 +38,8 @@ Collisions::Collisions(const Collisions& other) : rescues_(other.rescues_) {
     unproven_.reserve(other.unproven_.capacity());
 }
 
-void Collisions::begin_frame(std::vector<Collider>& colliders, double seconds) {
-    for (std::size_t i = 0; i < collisions_.size(); ++i) {
-        const RigidTransform previous_pose = colliders[i].pose;
-        colliders[i].pose = pose_after(colliders[i], seconds);
-        collisions_[i]->begin_frame(colliders[i], previous_pose);
-    }
+void Collisions::restart(std::span<const std::uint32_t> particles, const Particles& now) {
+    for (const auto& collision : collisions_) collision->restart(particles, now);
 }
 
 void Collisions::relax(Particles& particles, SimulationProfile& profile, const Workers& workers) {
@@ -66,6 +62,12 @@ void Collisions::keep_free(Particles& particles, SimulationProfile& profile) {
             ++profile.rescued_count;
     }
     for (const auto& collision : collisions_) collision->end_frame(particles);
+}
+
+Vec3d Collisions::without_approach(std::size_t particle, const Particles& particles, Vec3d motion) const {
+    for (const auto& collision : collisions_)
+        motion = collision->without_approach(particle, particles, motion);
+    return motion;
 }
 
 void Collisions::archive(StateArchive& state, const std::vector<Collider>& colliders) {

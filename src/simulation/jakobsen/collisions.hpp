@@ -2,7 +2,10 @@
 
 #include "simulation/jakobsen/collision.hpp"
 
+#include <cstddef>
+#include <cstdint>
 #include <memory>
+#include <span>
 #include <vector>
 
 namespace echinus {
@@ -15,12 +18,18 @@ class Collisions {
     Collisions(const Collisions& other);
     Collisions& operator=(const Collisions&) = delete;
 
-    /// Moves the colliders on by a frame.
-    void begin_frame(std::vector<Collider>& colliders, double seconds);
+    void restart(std::span<const std::uint32_t> particles, const Particles& now);
+    /// @param number    of the collider
+    /// @param collider  where the frame leads it
+    void begin_frame(std::size_t number, const Collider& collider, const RigidTransform& previous_pose) {
+        collisions_[number]->begin_frame(collider, previous_pose);
+    }
     void relax(Particles& particles, SimulationProfile& profile, const Workers& workers);
     /// The proof at the end of a frame: rescues the particles that are not proven free, and counts those that
     /// are lost nevertheless.
     void keep_free(Particles& particles, SimulationProfile& profile);
+    /// @param motion  of the particle in this frame @return the part of it that the surfaces leave it
+    Vec3d without_approach(std::size_t particle, const Particles& particles, Vec3d motion) const;
 
     /// @param colliders  where they stand
     void archive(StateArchive& state, const std::vector<Collider>& colliders);

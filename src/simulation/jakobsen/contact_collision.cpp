@@ -80,4 +80,15 @@ std::size_t ContactCollision::relax_piece(std::size_t begin, Particles& particle
     return pushed_count;
 }
 
+/// The map is asked once more, as the contacts of a piece are not kept.
+Vec3d ContactCollision::without_approach(std::size_t i, const Particles& particles,
+                                         const Vec3d& motion) const {
+    if (!passes_.empty() && passes_[i] != 0) return motion;
+    const Vec3f position = particles.positions[i];
+    const Contact nearest = contact(collider_, position, kTouchInThicknesses * reach_);
+    if (!needs_response(position, nearest, kTouchInThicknesses * rules_.thickness)) return motion;
+    const Vec3d material(material_.at(position));
+    return material + stopped_motion(motion - material, nearest.normal, rules_.friction);
+}
+
 } // namespace echinus

@@ -18,6 +18,7 @@ class ContactCollision final : public Collision {
 
     void begin_frame(const Collider& collider, const RigidTransform& previous_pose) override;
     void relax(Particles& particles, SimulationProfile& profile, const Workers& workers) override;
+    Vec3d without_approach(std::size_t i, const Particles& particles, const Vec3d& motion) const override;
 
   private:
     std::size_t relax_piece(std::size_t begin, Particles& particles);

@@ -31,6 +31,14 @@ Vec3f apply_friction(const Vec3f& motion, const Vec3f& normal, float grip) {
     return motion - tangential * (grip / slip);
 }
 
+Vec3d stopped_motion(const Vec3d& motion, const Vec3f& normal, float friction) {
+    const double approach = -dot(motion, Vec3d(normal));
+    if (!(approach > 0)) return motion;
+    const Vec3d along = motion + Vec3d(normal) * approach;
+    const double slip = length(along), grip = double{friction} * approach;
+    return slip > grip ? along * (1 - grip / slip) : Vec3d{};
+}
+
 PushedOut push_out(const Vec3f& motion, const Vec3f& normal, float missing, float friction) {
     const float approach = std::max(0.0F, -dot(motion, normal));
     const float back = std::min(missing, approach);

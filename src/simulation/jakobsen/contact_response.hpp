@@ -16,6 +16,9 @@ struct ResponseRules {
 /// 76 degrees the thickness is not kept in full.
 inline constexpr float kReachInThicknesses = 4;
 
+/// A particle that was just put at the thickness counts as touching nearer than this.
+inline constexpr float kTouchInThicknesses = 1 + 1.0F / 16;
+
 /// How far the particle is below the plane at `thickness` over the contact plane.
 inline float missing_distance(const Vec3f& position, const Contact& contact, float thickness) {
     return thickness - dot(position - contact.point, contact.normal);
@@ -44,6 +47,10 @@ Vec3f granted_push(const Vec3f& wanted, const Vec3f& motion, bool inside);
 /// The motion that friction leaves: its part along the contact plane is shortened by at most `grip`, and
 /// never reversed. @pre normal has unit length
 Vec3f apply_friction(const Vec3f& motion, const Vec3f& normal, float grip);
+
+/// The motion that a surface leaves of a motion into it: that part is gone, and friction takes its share of
+/// the rest. @param motion  relative to the surface's material
+Vec3d stopped_motion(const Vec3d& motion, const Vec3f& normal, float friction);
 
 /// The motion that an exact contact leaves, and the part of the push that was new motion rather than a way
 /// back: the particle is put where it belongs, and the excess is not added to its velocity.

@@ -2,6 +2,7 @@
 
 #include "exact_map/query/stretched_contact.hpp"
 #include "geometry/parallel.hpp"
+#include "simulation/jakobsen/contact_response.hpp"
 
 #include <algorithm>
 #include <array>
@@ -30,10 +31,15 @@ ExactCollision::ExactCollision(const Collider& collider, const Particles& partic
     moved_along_.resize(particles.count());
 }
 
+void ExactCollision::restart(std::span<const std::uint32_t> restarted, const Particles& particles) {
+    for (const std::uint32_t i : restarted) known_.forget(i, particles.pinned(i));
+    free_places_.restart(restarted, now_, particles);
+}
+
 void ExactCollision::begin_frame(const Collider& collider, const RigidTransform& previous_pose) {
     frame_start_pose_ = previous_pose;
     free_places_.begin_frame(collider, previous_pose);
-    moves_ = collider.moves();
+    moves_ = collider.pose != previous_pose;
     now_ = ColliderNow(collider, previous_pose, options_);
     if (moves_) known_.follow(now_);
 }
@@ -45,7 +51,7 @@ void ExactCollision::archive(StateArchive& state, const Collider& collider) {
 }
 
 void ExactCollision::relax(Particles& particles, SimulationProfile& profile, const Workers& workers) {
-    const std::size_t size = pieces_.size() > 1 ? kSharedSize : particles.count();
+    const std::size_t size = pieces_.size() > 1 ? kSharedSize : std::max<std::size_t>(particles.count(), 1);
     workers.for_ranges(particles.count(), size,
                        [&](std::size_t, std::size_t piece, std::size_t first, std::size_t end) {
                            relax(first, end, particles, pieces_[piece]);
@@ -146,6 +152,14 @@ bool ExactCollision::meet_on_the_way(std::size_t i, const Particles& particles, 
     const Vec3f over_plane = known_.asked_at_body[i] - now_.to_body(hit.point);
     known_.remember_plane(i, now_, normal, dot(over_plane, normal));
     return true;
+}
+
+Vec3d ExactCollision::without_approach(std::size_t i, const Particles& particles, const Vec3d& motion) const {
+    const Vec3f position = particles.positions[i], normal = known_.normal[i];
+    const float over = known_.height[i] + dot(position - known_.asked_at[i], normal);
+    if (!(over <= kTouchInThicknesses * now_.thickness)) return motion;
+    const Vec3d material(now_.material.at(position));
+    return material + stopped_motion(motion - material, normal, now_.friction);
 }
 
 std::span<const std::uint32_t> ExactCollision::find_unproven(const Particles& particles) {

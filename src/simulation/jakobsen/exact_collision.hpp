@@ -27,9 +27,13 @@ class ExactCollision final : public Collision {
                    const SimulationOptions& options);
     std::unique_ptr<Collision> clone() const override { return std::make_unique<ExactCollision>(*this); }
 
+    void restart(std::span<const std::uint32_t> restarted, const Particles& particles) override;
     void begin_frame(const Collider& collider, const RigidTransform& previous_pose) override;
     /// To the thickness over the nearest point, with friction.
     void relax(Particles& particles, SimulationProfile& profile, const Workers& workers) override;
+
+    /// By the plane that it was pushed to.
+    Vec3d without_approach(std::size_t i, const Particles& particles, const Vec3d& motion) const override;
 
     std::span<const std::uint32_t> find_unproven(const Particles& particles) override;
     bool is_unproven(std::size_t i, const Particles& particles) const override;

@@ -15,6 +15,16 @@ FreePlaces::FreePlaces(const ColliderNow& collider, const Particles& particles,
     }
 }
 
+void FreePlaces::restart(std::span<const std::uint32_t> restarted, const ColliderNow& collider,
+                         const Particles& particles) {
+    if (restarted.empty()) return;
+    for (const std::uint32_t i : restarted)
+        states_[i] = collider.outside(particles.frame_start[i]) ? State::FrameStart : State::Never;
+    exceptions_.clear();
+    for (std::uint32_t i = 0; i < states_.size(); ++i)
+        if (states_[i] != State::FrameStart) exceptions_.push_back(i);
+}
+
 bool FreePlaces::mark_lost(std::size_t i) {
     if (lost_[i] != 0) return false;
     lost_[i] = 1;

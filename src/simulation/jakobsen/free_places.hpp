@@ -22,6 +22,9 @@ class FreePlaces {
     FreePlaces(const ColliderNow& collider, const Particles& particles, std::span<const std::uint8_t> passes);
 
     /// @param pose  of the collider when the frame begins
+    /// These particles are free or not where the frame that comes starts them, whatever they were before.
+    void restart(std::span<const std::uint32_t> restarted, const ColliderNow& collider,
+                 const Particles& particles);
     void begin_frame(const Collider& collider, const RigidTransform& pose) {
         frame_start_ = FrameChange(collider, pose);
     }

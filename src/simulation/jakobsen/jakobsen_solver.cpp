@@ -120,7 +120,11 @@ void JakobsenSolver::integrate() {
 
 void JakobsenSolver::move_colliders() {
     const Stopwatch stopwatch(profile.collision_seconds);
-    collisions_.begin_frame(colliders, options.time_step);
+    for (std::size_t i = 0; i < colliders.size(); ++i) {
+        const RigidTransform previous_pose = colliders[i].pose;
+        colliders[i].pose = pose_after(colliders[i], options.time_step);
+        collisions_.begin_frame(i, colliders[i], previous_pose);
+    }
     attachments_.follow(colliders, deforming_, 1, particles_.positions);
 }
 

@@ -33,6 +33,11 @@ struct KnownContacts {
     /// @param passes  [count] 1 for the particles that the collider lets through, or none
     KnownContacts(const Particles& particles, std::span<const std::uint8_t> passes);
 
+    /// Nothing is known around the particle. @param is_pinned  so that nothing need be
+    void forget(std::size_t i, bool is_pinned) {
+        clearance[i] = is_pinned ? kNeverAsk : -1;
+        height[i] = kNoPlane;
+    }
     bool is_never_asked(std::size_t i) const { return clearance[i] == kNeverAsk; }
 
     /// Moves along with the collider, which has moved.

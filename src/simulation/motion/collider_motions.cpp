@@ -8,15 +8,6 @@
 
 namespace echinus {
 
-namespace {
-
-bool same(const RigidTransform& a, const RigidTransform& b) {
-    const Rotation &p = a.rotation, &q = b.rotation;
-    return a.translation == b.translation && p.w == q.w && p.x == q.x && p.y == q.y && p.z == q.z;
-}
-
-} // namespace
-
 RigidTransform after(const RigidTransform& motion, const RigidTransform& pose) {
     return {(motion.rotation * pose.rotation).normalised(), motion.to_world(pose.translation)};
 }
@@ -46,7 +37,7 @@ void ColliderMotions::begin_frame(std::vector<Collider>& colliders, double end_t
             motion.next = motion.body->after(colliders[c].pose, loads[c], gravity, frame_seconds);
         if (!motion.keys.empty()) motion.next = pose_at(motion.keys, end_time);
         // A collider that stays where it was led does not move at all, not even by what was rounded.
-        if (motion.next && !(motion.last && same(*motion.next, *motion.last)))
+        if (motion.next && motion.next != motion.last)
             head_for(colliders[c], *motion.next, frame_seconds);
         else
             colliders[c].linear_velocity = colliders[c].angular_velocity = {};
