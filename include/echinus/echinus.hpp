@@ -20,6 +20,7 @@
 #include <echinus/particle_collision.hpp>
 #include <echinus/simulation.hpp>
 #include <echinus/soft_body.hpp>
+#include <echinus/surface_collision.hpp>
 #include <echinus/surface_queries.hpp>
 #include <echinus/tetrahedra.hpp>
 #include <echinus/version.hpp>
