@@ -66,6 +66,9 @@ echinus_status make(const char* function, Handle** result, const Body& body) noe
     });
 }
 
+/// @throws WrongArgument beyond the last
+void require_index(std::size_t index, std::size_t count, const char* name);
+
 /// The number of elements that `count` items of `width` elements each make.
 /// @throws WrongArgument where it overflows
 std::size_t times(std::size_t count, std::size_t width, const char* name);

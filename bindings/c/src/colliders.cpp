@@ -75,6 +75,21 @@ Collider collider_from(const echinus_collider& collider) {
             .angular_velocity = vector_of(collider.angular_velocity)};
 }
 
+std::vector<Collider> colliders_from(const echinus_collider* first, std::size_t count) {
+    std::vector<Collider> result;
+    if (count == 0) return result;
+    const std::size_t size = at(first, "colliders").size;
+    require_size(size, sizeof *first, sizeof *first, "colliders");
+    times(count, size, "colliders");
+    for (std::size_t i = 0; i < count; ++i) {
+        const auto* place = reinterpret_cast<const std::byte*>(first) + i * size;
+        const auto& given = *reinterpret_cast<const echinus_collider*>(place);
+        require(given.size == size, "the colliders have different sizes");
+        result.push_back(collider_from(read_struct(&given, echinus_collider{}, "colliders")));
+    }
+    return result;
+}
+
 Collider collider_at(const echinus_collider* collider) {
     const echinus_collider given = read_struct(collider, at_rest(nullptr), "collider");
     checked_pose(given.pose, "collider");

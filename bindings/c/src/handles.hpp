@@ -158,5 +158,7 @@ Collider collider_at(const echinus_collider* collider);
 /// A collider for a simulation, which checks it.
 /// @throws WrongArgument for a null map
 Collider collider_from(const echinus_collider& collider);
+/// The same of a row of the caller's structs, which may be larger than ours.
+std::vector<Collider> colliders_from(const echinus_collider* first, std::size_t count);
 
 } // namespace echinus::c

@@ -86,6 +86,12 @@ echinus_status note_error(const char* function) noexcept {
     }
 }
 
+void require_index(std::size_t index, std::size_t count, const char* name) {
+    if (index >= count)
+        throw WrongArgument("there is no " + std::string(name) + " " + std::to_string(index) +
+                            "; there are " + std::to_string(count));
+}
+
 std::size_t times(std::size_t count, std::size_t width, const char* name) {
     if (count > std::numeric_limits<std::ptrdiff_t>::max() / width)
         throw WrongArgument("the count of " + std::string(name) + ", " + std::to_string(count) +

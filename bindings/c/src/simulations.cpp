@@ -12,22 +12,6 @@ ECHINUS_REQUIRE_NO_PADDING_AFTER(echinus_simulation_profile, squeezed_count);
 
 namespace {
 
-/// A row of the caller's structs, which may be larger than ours.
-std::vector<Collider> colliders_from(const echinus_collider* first, std::size_t count) {
-    std::vector<Collider> result;
-    if (count == 0) return result;
-    const std::size_t size = at(first, "colliders").size;
-    require_size(size, sizeof *first, sizeof *first, "colliders");
-    times(count, size, "colliders");
-    for (std::size_t i = 0; i < count; ++i) {
-        const auto* place = reinterpret_cast<const std::byte*>(first) + i * size;
-        const auto& given = *reinterpret_cast<const echinus_collider*>(place);
-        require(given.size == size, "the colliders have different sizes");
-        result.push_back(collider_from(read_struct(&given, echinus_collider{}, "colliders")));
-    }
-    return result;
-}
-
 echinus_simulation_profile as_c(const SimulationProfile& profile) {
     const auto& [integration_seconds, constraint_seconds, collision_seconds, query_count, contact_count,
                  map_query_count, rescued_count, lost_count, truncated_count, measured_pair_count,
@@ -48,13 +32,6 @@ Simulation& running_at(echinus_simulation* simulation) {
     if (at(simulation, "simulation").failed)
         throw Error(ErrorCode::Diverged, "a step of the simulation failed before; it can only be read");
     return simulation->value;
-}
-
-/// @throws WrongArgument beyond the last
-void require_index(std::size_t index, std::size_t count, const char* name) {
-    if (index >= count)
-        throw WrongArgument("there is no " + std::string(name) + " " + std::to_string(index) +
-                            "; there are " + std::to_string(count));
 }
 
 } // namespace

@@ -2,7 +2,7 @@ import { Handle } from './core.mjs';
 import { EchinusError, refuse, requireCount, requireFinite, withDefaults } from './errors.mjs';
 import { requireMap } from './maps.mjs';
 import { asIndices, asVertices } from './mesh.mjs';
-import { collider, deformableArrays, pose, simulationOptions, simulationProfile, words } from './structs.mjs';
+import { collider, deformableArrays, pose } from './structs.mjs';
 
 const NO_TURN = [1, 0, 0, 0];
 
@@ -13,13 +13,9 @@ export class Collision extends Handle {
     constructor(core, options) {
         const all = complete(options);
         const particleCount = all.positions.length / 3; // now: see Mesh.fromArrays
-        super(core, core.make('wasm_collision_make', inOwnWords(() => makeSimulation(core, all))), 'wasm_collision_delete');
+        super(core, inOwnWords(() => make(core, all)), 'wasm_collision_delete');
         Object.defineProperty(this, 'particleCount', { value: particleCount, enumerable: true });
         Object.defineProperty(this, 'colliderCount', { value: all.colliders.length, enumerable: true });
-    }
-
-    get #simulation() {
-        return this.core.call('wasm_collision_simulation', this.address);
     }
 
     // Views of the module's memory: see Buffer in buffers.mjs.
@@ -32,7 +28,6 @@ export class Collision extends Handle {
                 buffer,
                 positions: new Float32Array(buffer, at('wasm_collision_positions'), 3 * this.particleCount),
                 velocities: new Float32Array(buffer, at('wasm_collision_velocities'), 3 * this.particleCount),
-                corrected: new Uint32Array(buffer, at('wasm_collision_corrected'), this.particleCount),
             };
         }
         return this.#views;
@@ -44,19 +39,20 @@ export class Collision extends Handle {
         return this.#arrays.velocities;
     }
     get corrected() {
-        return this.#arrays.corrected.subarray(0, this.#correctedCount);
+        const { address } = this;
+        return new Uint32Array(this.core.memory.buffer, this.core.call('wasm_collision_corrected', address) >>> 0, this.#correctedCount);
     }
     get squeezedCount() {
-        return this.core.ask(simulationProfile, 'echinus_simulation_read_profile', this.#simulation).squeezedCount;
+        return this.core.call('wasm_collision_unresolved_count', this.address);
     }
     get #correctedCount() {
-        return this.core.call('wasm_collision_corrected_count', this.address);
+        return this.core.call('wasm_collision_corrected_count', this.address) >>> 0;
     }
 
     setColliderPose(index, position, rotation = NO_TURN) {
         requireCount(index, 'the collider');
         const place = { translation: Array.from(requireFinite(position, 'the position')), rotation: Array.from(requireRotation(rotation)) };
-        this.core.withStruct(pose, place, (address) => this.core.do('echinus_simulation_set_collider_pose', this.#simulation, index, address));
+        this.core.withStruct(pose, place, (address) => this.core.do('wasm_collision_set_pose', this.address, index, address));
     }
 
     correct(seconds) {
@@ -88,6 +84,7 @@ function complete(options) {
         };
     });
     const faces = asIndices(all.faces, 'faces', 3);
+    for (const name of ['selfCollision', 'untangle']) if (all[name] && !all.surfaces) refuse(`${name} needs surfaces: set both`);
     if (all.surfaces && faces.length === 0) refuse('surfaces collide where there are faces: give the faces of the deformable, three particles each');
     return { ...all, positions: asVertices(all.positions), faces, colliders };
 }
@@ -110,19 +107,8 @@ function requireRotation(rotation) {
     return rotation;
 }
 
-/**
- * A simulation in which particles only collide: without sticks, or with faces of next to no stiffness. Its unit of time is
- * one step of the other solver, however long that is.
- */
-const options = ({ thickness, friction, surfaces, selfCollision, allowOpenColliders, untangle }) => ({
-    solver: words.solver.indexOf(surfaces ? 'newton' : 'jakobsen'), timeStep: 1, gravity: [0, 0, 0],
-    drag: 0, iterationCount: 1,
-    stretchStiffness: 1e-6, shearStiffness: 0, bendingStiffness: 0, damping: 0, airDrag: 0,
-    bound: 1e30, // where the other solver sends its particles is not ours to judge
-    thickness, friction, surfaceCollision: surfaces, selfCollision, allowOpenColliders, untangle,
-});
-
-function makeSimulation(core, { positions, faces, colliders, ...rest }) {
+function make(core, { positions, faces, colliders, thickness, friction, surfaces, selfCollision, allowOpenColliders, untangle }) {
+    if (positions.length === 0) refuse('there are no particles');
     const counts = { particleCount: positions.length / 3, faceCount: faces.length / 3 };
     const maps = colliders.map(({ map }) => requireMap(core, map));
     const deformable = core.withCopies([positions, faces], (p, f) =>
@@ -133,8 +119,10 @@ function makeSimulation(core, { positions, faces, colliders, ...rest }) {
                 core.call('echinus_collider_init', row + collider.bytes * i, collider.bytes, maps[i]);
                 core.write(collider, row + collider.bytes * i, { pose, scale });
             });
-            return core.withOptions('echinus_simulation_options_init', simulationOptions, options(rest), (chosen) =>
-                core.make('echinus_simulation_create', deformable, row, colliders.length, chosen));
+            const common = [deformable, row, colliders.length, thickness, friction];
+            return surfaces
+                ? core.make('wasm_collision_make_surfaces', ...common, selfCollision, untangle)
+                : core.make('wasm_collision_make', ...common, allowOpenColliders);
         });
     } finally {
         core.call('echinus_deformable_destroy', deformable);

@@ -494,7 +494,7 @@ export interface CollisionOptions {
 /**
  * Keeps particles that another solver moves out of models: of each of its steps what led a particle inside, or through a
  * model, is taken back. A particle that began outside of exact maps is outside after every correct(), however fast it or
- * the model moved; the limits are those of Simulation::step() in echinus/simulation.hpp.
+ * the model moved; the limits are those of ParticleCollision and, with `surfaces`, SurfaceCollision (docs/own_solver.md).
  *
  * After each step of the solver: write where it put the particles into `positions`, call correct(), and give the solver
  * the positions and velocities of the particles in `corrected`. The views last as those of a buffer.
@@ -502,7 +502,7 @@ export interface CollisionOptions {
 export class Collision extends Deletable {
     readonly particleCount: number;
     readonly colliderCount: number;
-    /** [3 particleCount] world units. A particle whose place is not finite, or more than 1e12 units from where it was, stays there, for others to meet. */
+    /** [3 particleCount] world units. A particle whose place is not finite, or farther than 1e12 units from 0, is left so, and goes on from where it was. */
     readonly positions: Float32Array;
     /** [3 particleCount] units per second, of the particles in `corrected`. */
     readonly velocities: Float32Array;

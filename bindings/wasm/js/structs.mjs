@@ -58,17 +58,6 @@ export const deformableArrays = { bytes: 60, members: {
     faceCount: [32, 'Uint32'], attachments: [36, 'Uint32'], attachmentCount: [40, 'Uint32'], tetrahedra: [44, 'Uint32'],
     tetrahedronCount: [48, 'Uint32'], filters: [52, 'Uint32'], filterCount: [56, 'Uint32'],
 } };
-export const simulationOptions = { bytes: 256, members: {
-    size: [0, 'Uint32'], timeStep: [8, 'Float64'], solver: [16, 'Int32'], iterationCount: [20, 'Uint32'],
-    newtonStepCount: [24, 'Uint32'], restFrameCount: [28, 'Uint32'], restDistance: [32, 'Float64'],
-    restSpeed: [40, 'Float64'], gravity: [48, 'Float64', 3], drag: [72, 'Float64'], stiffness: [80, 'Float64', 3],
-    thickness: [104, 'Float64'], selfThickness: [112, 'Float64'], friction: [120, 'Float64'], bound: [128, 'Float64'],
-    keepFree: [136, 'Int32'], allowOpenColliders: [140, 'Int32'], surfaceCollision: [144, 'Int32'],
-    selfCollision: [148, 'Int32'], untangle: [152, 'Int32'], threadCount: [156, 'Uint32'], density: [160, 'Float64'],
-    stretchStiffness: [168, 'Float64'], shearStiffness: [176, 'Float64'], bendingStiffness: [184, 'Float64'],
-    damping: [192, 'Float64'], newtonTolerance: [200, 'Float64'], airDrag: [208, 'Float64'], wind: [216, 'Float64', 3],
-    windRate: [240, 'Float64'], pressure: [248, 'Float64'],
-} };
 export const simulationProfile = { bytes: 96, members: {
     size: [0, 'Uint32'], integrationSeconds: [8, 'Float64'], constraintSeconds: [16, 'Float64'],
     collisionSeconds: [24, 'Float64'], queryCount: [32, 'BigUint64'], contactCount: [40, 'BigUint64'],

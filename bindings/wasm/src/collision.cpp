@@ -1,111 +1,99 @@
-// Collision for particles that another solver moves: a simulation of which nothing holds together, whose
-// particles are sent where that solver has put them.
+// Collision for particles that another solver moves, or for the faces between them, with the arrays that
+// JavaScript reads and writes.
 
 #include "interface.hpp"
 
+#include <echinus/particle_collision.hpp>
+#include <echinus/surface_collision.hpp>
+
+#include <cmath>
 #include <cstddef>
 #include <cstdlib>
+#include <utility>
+#include <variant>
 #include <vector>
 
 namespace echinus::wasm {
 
 namespace {
 
-/// The unit of time of the simulation is one step of the other solver, however long it is.
-constexpr double kStep = 1;
-
 struct Collision {
-    std::unique_ptr<echinus_simulation> owned;
-    Simulation& simulation = owned->value;
-    std::vector<Vec3f> positions = simulation.deformable().positions; ///< by the other solver, then corrected
-    std::vector<Vec3f> velocities = std::vector<Vec3f>(positions.size()); ///< of those that were corrected
-    std::vector<Vec3f> sent = velocities; ///< where they come to without contact
-    std::vector<std::uint8_t> was_corrected =
-        std::vector<std::uint8_t>(positions.size()); ///< in the step before
-    std::vector<std::uint32_t> corrected =
-        std::vector<std::uint32_t>(positions.size()); ///< [corrected_count] ascending
-    std::uint32_t corrected_count = 0;
+    using Kind = std::variant<ParticleCollision, SurfaceCollision>;
+
+    Collision(Kind kind_in, std::vector<Vec3f> start)
+        : kind(std::move(kind_in)), positions(std::move(start)), previous(positions),
+          velocities(positions.size()) {}
+
+    Kind kind;
+    std::vector<Vec3f> positions;  ///< by the other solver, then corrected
+    std::vector<Vec3f> previous;   ///< where the step began
+    std::vector<Vec3f> velocities; ///< of those that were corrected
+    std::span<const std::uint32_t> corrected{};
 };
 
-/// Farther than this in a step, units, a particle has exploded.
-constexpr double kFarthest = 1e12;
-
-/// Moves a particle by its other solver's step. It does not follow one that has exploded.
-/// @return where the simulation's integration puts it without contact
-Vec3f send(Simulation& simulation, std::size_t particle, const Vec3f& from, const Vec3f& to) {
-    Vec3d way = Vec3d(to) - Vec3d(from);
-    if (!(dot(way, way) <= kFarthest * kFarthest)) way = {}; // NaN, too
-    simulation.set_particle_velocity(particle, way * (1 / kStep));
-    return from + (from - simulation.deformable().previous_positions[particle]);
+bool has_exploded(const Vec3f& p) {
+    constexpr float kFarthest = ParticleCollision::kFarthest;
+    return !(std::fabs(p.x) <= kFarthest && std::fabs(p.y) <= kFarthest && std::fabs(p.z) <= kFarthest);
 }
 
-/// The rest of a particle's motion in a step after an impact: nothing into the surfaces that it touches.
-/// The motion of the step itself still has its way to the surface in it.
-Vec3d without_approach(const Simulation& simulation, const Vec3f& position, Vec3d motion) {
-    const float reach = 2 * static_cast<float>(*simulation.options().thickness);
-    for (const Collider& collider : simulation.colliders()) {
-        const Contact nearest = contact(collider, position, reach);
-        if (!nearest.found()) continue;
-        const Vec3d surface = velocity_at(collider, Vec3d(position)) * kStep;
-        const double along = dot(motion - surface, Vec3d(nearest.normal));
-        if (along < 0) motion -= Vec3d(nearest.normal) * along;
-    }
-    return motion;
-}
-
-/// A correction is longer than this. Particles are sent to the bit by the jakobsen solver; under the newton
-/// solver, where surfaces collide, a step converges to a tolerance.
-float least_correction(const SimulationOptions& options) {
-    constexpr float kInThicknesses = 1e-3F;
-    return options.surface_collision ? kInThicknesses * static_cast<float>(*options.thickness) : 0;
-}
-
-void note_corrections(Collision& collision, double seconds) {
-    const Deformable& now = collision.simulation.deformable();
-    const float least = least_correction(collision.simulation.options());
-    collision.corrected_count = 0;
-    for (std::uint32_t i = 0; i < collision.sent.size(); ++i) {
-        const bool is_corrected = length(now.positions[i] - collision.sent[i]) > least;
-        const bool is_impact = is_corrected && collision.was_corrected[i] == 0;
-        collision.was_corrected[i] = is_corrected ? 1 : 0;
-        if (!is_corrected) continue;
-        collision.corrected[collision.corrected_count++] = i;
-        collision.positions[i] = now.positions[i];
-        Vec3d motion = Vec3d(now.positions[i]) - Vec3d(now.previous_positions[i]);
-        if (is_impact) motion = without_approach(collision.simulation, now.positions[i], motion);
-        collision.velocities[i] = Vec3f(motion * (1 / seconds));
-    }
-}
-
+/// What has exploded goes on from where it was.
 void correct(Collision& collision, double seconds) {
-    const std::vector<Vec3f>& before = collision.simulation.deformable().positions;
-    for (std::size_t i = 0; i < before.size(); ++i)
-        collision.sent[i] = send(collision.simulation, i, before[i], collision.positions[i]);
-    collision.simulation.step();
-    note_corrections(collision, seconds);
+    auto& [kind, positions, previous, velocities, corrected] = collision;
+    for (std::size_t i = 0; i < positions.size(); ++i)
+        velocities[i] = (positions[i] - previous[i]) * static_cast<float>(1 / seconds);
+    if (auto* particles = std::get_if<ParticleCollision>(&kind))
+        corrected = particles->correct({previous, positions, velocities}, seconds);
+    else
+        corrected = std::get<SurfaceCollision>(kind).correct(positions, velocities, seconds);
+    for (std::size_t i = 0; i < positions.size(); ++i)
+        if (!has_exploded(positions[i])) previous[i] = positions[i];
 }
 
 } // namespace
 
-/// @param simulation  without a material, with a time step of kStep; taken over, also by a call that fails
 ECHINUS_EXPORT(wasm_collision_make)
-echinus_status wasm_collision_make(echinus_simulation* simulation, Collision** collision) {
-    std::unique_ptr<echinus_simulation> owned(simulation);
-    return make(__func__, collision, [&] { return Collision{std::move(owned)}; });
+echinus_status wasm_collision_make(const echinus_deformable* deformable, const echinus_collider* row,
+                                   std::size_t count, double thickness, double friction, bool allow_open,
+                                   Collision** collision) {
+    return make(__func__, collision, [&] {
+        return Collision(ParticleCollision(colliders_from(row, count), thickness,
+                                           {.friction = friction, .allow_open_colliders = allow_open}),
+                         deformable->value.positions);
+    });
+}
+ECHINUS_EXPORT(wasm_collision_make_surfaces)
+echinus_status wasm_collision_make_surfaces(const echinus_deformable* deformable, const echinus_collider* row,
+                                            std::size_t count, double thickness, double friction,
+                                            bool self_collision, bool untangle, Collision** collision) {
+    return make(__func__, collision, [&] {
+        const Deformable& given = deformable->value;
+        SurfaceCollision surfaces(
+            given.positions, given.faces, colliders_from(row, count), thickness,
+            {.friction = friction, .self_collision = self_collision, .untangle = untangle});
+        std::vector<Vec3f> start = surfaces.positions();
+        return Collision(std::move(surfaces), std::move(start));
+    });
 }
 ECHINUS_EXPORT(wasm_collision_delete) void wasm_collision_delete(Collision* collision) {
     delete collision;
 }
 
+ECHINUS_EXPORT(wasm_collision_set_pose)
+echinus_status wasm_collision_set_pose(Collision* collision, std::size_t index, const echinus_pose* pose) {
+    return guarded(__func__, [&] {
+        std::visit(
+            [&](auto& kind) {
+                require_index(index, kind.colliders().size(), "collider");
+                kind.set_collider_pose(index, checked_pose(*pose, "pose"));
+            },
+            collision->kind);
+    });
+}
 ECHINUS_EXPORT(wasm_collision_correct)
 echinus_status wasm_collision_correct(Collision* collision, double seconds) {
     return guarded(__func__, [&] { correct(*collision, seconds); });
 }
 
-ECHINUS_EXPORT(wasm_collision_simulation)
-echinus_simulation* wasm_collision_simulation(const Collision* collision) {
-    return collision->owned.get();
-}
 ECHINUS_EXPORT(wasm_collision_positions) const Vec3f* wasm_collision_positions(const Collision* collision) {
     return collision->positions.data();
 }
@@ -117,8 +105,13 @@ const std::uint32_t* wasm_collision_corrected(const Collision* collision) {
     return collision->corrected.data();
 }
 ECHINUS_EXPORT(wasm_collision_corrected_count)
-std::uint32_t wasm_collision_corrected_count(const Collision* collision) {
-    return collision->corrected_count;
+std::size_t wasm_collision_corrected_count(const Collision* collision) {
+    return collision->corrected.size();
+}
+ECHINUS_EXPORT(wasm_collision_unresolved_count)
+double wasm_collision_unresolved_count(const Collision* collision) {
+    const auto* surfaces = std::get_if<SurfaceCollision>(&collision->kind);
+    return surfaces != nullptr ? static_cast<double>(surfaces->unresolved_count()) : 0;
 }
 
 /// The function that gives back what memalign() took.

@@ -96,37 +96,6 @@ static_assert(sizeof(echinus_deformable_arrays) == 60 && offsetof(echinus_deform
               offsetof(echinus_deformable_arrays, tetrahedron_count) == 48 &&
               offsetof(echinus_deformable_arrays, filters) == 52 &&
               offsetof(echinus_deformable_arrays, filter_count) == 56);
-static_assert(sizeof(echinus_simulation_options) == 256 && offsetof(echinus_simulation_options, size) == 0 &&
-              offsetof(echinus_simulation_options, time_step) == 8 &&
-              offsetof(echinus_simulation_options, solver) == 16 &&
-              offsetof(echinus_simulation_options, iteration_count) == 20 &&
-              offsetof(echinus_simulation_options, newton_step_count) == 24 &&
-              offsetof(echinus_simulation_options, rest_frame_count) == 28 &&
-              offsetof(echinus_simulation_options, rest_distance) == 32 &&
-              offsetof(echinus_simulation_options, rest_speed) == 40 &&
-              offsetof(echinus_simulation_options, gravity) == 48 &&
-              offsetof(echinus_simulation_options, drag) == 72 &&
-              offsetof(echinus_simulation_options, stiffness) == 80 &&
-              offsetof(echinus_simulation_options, thickness) == 104 &&
-              offsetof(echinus_simulation_options, self_thickness) == 112 &&
-              offsetof(echinus_simulation_options, friction) == 120 &&
-              offsetof(echinus_simulation_options, bound) == 128 &&
-              offsetof(echinus_simulation_options, keep_free) == 136 &&
-              offsetof(echinus_simulation_options, allow_open_colliders) == 140 &&
-              offsetof(echinus_simulation_options, surface_collision) == 144 &&
-              offsetof(echinus_simulation_options, self_collision) == 148 &&
-              offsetof(echinus_simulation_options, untangle) == 152 &&
-              offsetof(echinus_simulation_options, thread_count) == 156 &&
-              offsetof(echinus_simulation_options, density) == 160 &&
-              offsetof(echinus_simulation_options, stretch_stiffness) == 168 &&
-              offsetof(echinus_simulation_options, shear_stiffness) == 176 &&
-              offsetof(echinus_simulation_options, bending_stiffness) == 184 &&
-              offsetof(echinus_simulation_options, damping) == 192 &&
-              offsetof(echinus_simulation_options, newton_tolerance) == 200 &&
-              offsetof(echinus_simulation_options, air_drag) == 208 &&
-              offsetof(echinus_simulation_options, wind) == 216 &&
-              offsetof(echinus_simulation_options, wind_rate) == 240 &&
-              offsetof(echinus_simulation_options, pressure) == 248);
 static_assert(sizeof(echinus_simulation_profile) == 96 && offsetof(echinus_simulation_profile, size) == 0 &&
               offsetof(echinus_simulation_profile, integration_seconds) == 8 &&
               offsetof(echinus_simulation_profile, constraint_seconds) == 16 &&
