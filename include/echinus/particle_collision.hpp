@@ -83,6 +83,10 @@ class ParticleCollision {
     /// step begins anew. The same otherwise.
     void place_collider(std::size_t collider_index, const RigidTransform& pose);
 
+    /// Of one collider, in place of the options' friction. The same otherwise.
+    /// @throws Error InvalidOptions for a friction out of range
+    void set_collider_friction(std::size_t collider_index, double friction);
+
     /// Corrects the particles after a step of the solver, and moves the colliders.
     ///
     /// A position is corrected where a particle comes nearer to a surface than the thickness: out along the

@@ -127,6 +127,8 @@ void SurfaceCollision::State::write_back(std::span<Vec3f> positions, std::span<V
 SurfaceCollision::SurfaceCollision(std::vector<Vec3f> positions, std::vector<Triangle> faces,
                                    std::vector<Collider> colliders, double thickness,
                                    const SurfaceCollisionOptions& options) {
+    require_within("thickness", thickness, 0, kMostThickness);
+    require_ranges(options);
     require_option(!faces.empty(), "surfaces collide where there are faces; give those of the deformable");
     state_ = std::make_unique<State>(Simulation(deformable_of(std::move(positions), std::move(faces)),
                                                 at_rest(std::move(colliders)),

@@ -56,6 +56,9 @@ class Samples {
         echinus_simulation_options_init(&options, sizeof options);
         options.solver = ECHINUS_SOLVER_JAKOBSEN;
         expect_ok(echinus_simulation_create(deformable_.get(), &collider_, 1, &options, out(simulation_)));
+        expect_ok(echinus_particle_collision_create(&collider_, 1, 0.01, nullptr, out(particles_)));
+        expect_ok(echinus_surface_collision_create(kFarTriangle, 3, kIndices, 1, &collider_, 1, 0.01, nullptr,
+                                                   out(surfaces_)));
         custom_.contains = [](void*, const float*, std::size_t, std::uint8_t*) {};
         custom_.contacts = [](void*, const float*, std::size_t, float, echinus_contact*) {};
     }
@@ -99,6 +102,10 @@ class Samples {
     const echinus_deformable* address(const echinus_deformable*) { return deformable_.get(); }
     const echinus_simulation* address(const echinus_simulation*) { return simulation_.get(); }
     echinus_simulation* address(echinus_simulation*) { return simulation_.get(); }
+    echinus_particle_collision* address(echinus_particle_collision*) { return particles_.get(); }
+    const echinus_particle_collision* address(const echinus_particle_collision*) { return particles_.get(); }
+    echinus_surface_collision* address(echinus_surface_collision*) { return surfaces_.get(); }
+    const echinus_surface_collision* address(const echinus_surface_collision*) { return surfaces_.get(); }
     const echinus_scene* address(const echinus_scene*) { return scene_.get(); }
     const echinus_collider* address(const echinus_collider*) { return &collider_; }
     const echinus_custom_map* address(const echinus_custom_map*) { return &custom_; }
@@ -146,9 +153,15 @@ class Samples {
     echinus_vertex_cache** list_or_place(echinus_vertex_cache**) { return cache_place_.fresh(); }
     echinus_deformable** list_or_place(echinus_deformable**) { return deformable_place_.fresh(); }
     echinus_simulation** list_or_place(echinus_simulation**) { return simulation_place_.fresh(); }
+    echinus_particle_collision** list_or_place(echinus_particle_collision**) {
+        return particles_place_.fresh();
+    }
+    echinus_surface_collision** list_or_place(echinus_surface_collision**) { return surfaces_place_.fresh(); }
+    const std::uint32_t** list_or_place(const std::uint32_t**) { return &corrected_; }
     echinus_scene** list_or_place(echinus_scene**) { return scene_place_.fresh(); }
 
     static constexpr std::uint32_t kIndices[4] = {0, 1, 2, 3};
+    static constexpr float kFarTriangle[9] = {9, 0, 0, 10, 0, 0, 9, 1, 0};
     static constexpr const char* kTexts[1] = {"none"};
     float floats_[12] = {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1};
     double doubles_[12] = {1, 0.1, 0.2, 1, 0, 0, 0, 1, 0, 0, 0, 1};
@@ -162,6 +175,9 @@ class Samples {
     CDeformable deformable_;
     CSimulation simulation_;
     CScene scene_;
+    CParticleCollision particles_;
+    CSurfaceCollision surfaces_;
+    const std::uint32_t* corrected_ = nullptr;
     echinus_collider collider_{};
     echinus_custom_map custom_ = [] {
         echinus_custom_map custom{};
@@ -182,6 +198,8 @@ class Samples {
     Place<echinus_deformable, echinus_deformable_destroy> deformable_place_;
     Place<echinus_simulation, echinus_simulation_destroy> simulation_place_;
     Place<echinus_scene, echinus_scene_destroy> scene_place_;
+    Place<echinus_particle_collision, echinus_particle_collision_destroy> particles_place_;
+    Place<echinus_surface_collision, echinus_surface_collision_destroy> surfaces_place_;
 };
 
 bool is_named(std::string_view name) {
@@ -440,6 +458,19 @@ TEST(COptions, HaveTheDefaultsOfCppAndAreRefusedWithAnyMemberOutOfItsRange) {
     sweep_options<SimulationOptions>(
         echinus_simulation_options_init, [&](const echinus_simulation_options& o) {
             return echinus_simulation_create(particle.get(), nullptr, 0, &o, out(made_simulation));
+        });
+    CParticleCollision made_particles;
+    sweep_options<ParticleCollisionOptions>(
+        echinus_particle_collision_options_init, [&](const echinus_particle_collision_options& o) {
+            return echinus_particle_collision_create(nullptr, 0, 0.01, &o, out(made_particles));
+        });
+    CSurfaceCollision made_surfaces;
+    const float corners[9] = {0, 0, 0, 1, 0, 0, 0, 1, 0};
+    const std::uint32_t face[3] = {0, 1, 2};
+    sweep_options<SurfaceCollisionOptions>(
+        echinus_surface_collision_options_init, [&](const echinus_surface_collision_options& o) {
+            return echinus_surface_collision_create(corners, 3, face, 1, nullptr, 0, 0.01, &o,
+                                                    out(made_surfaces));
         });
 }
 

@@ -34,6 +34,8 @@ using CEmbedding = Handle<echinus_embedding, echinus_embedding_destroy>;
 using CVertexCache = Handle<echinus_vertex_cache, echinus_vertex_cache_destroy>;
 using CDeformable = Handle<echinus_deformable, echinus_deformable_destroy>;
 using CSimulation = Handle<echinus_simulation, echinus_simulation_destroy>;
+using CParticleCollision = Handle<echinus_particle_collision, echinus_particle_collision_destroy>;
+using CSurfaceCollision = Handle<echinus_surface_collision, echinus_surface_collision_destroy>;
 using CScene = Handle<echinus_scene, echinus_scene_destroy>;
 
 /// The place for a result of a call; the handle owns it after the full expression.

@@ -23,6 +23,9 @@ SHEET = ech.make_cloth(column_count=4, row_count=4)
 CACHE = ech.VertexCache([MESH.vertices], 1)
 SIMULATION = ech.Simulation(SHEET, [ech.Collider(EXACT, position=(0, 0, 9))])
 POINTS = np.zeros((2, 3), np.float32)
+PARTICLES = ech.ParticleCollision([ech.Collider(EXACT)], 0.01)
+CORNERS = np.array([[9, 0, 0], [10, 0, 0], [9, 1, 0]], np.float32)
+SURFACES = ech.SurfaceCollision(CORNERS, [[0, 1, 2]], [ech.Collider(EXACT)], 0.01)
 KEY = ech.PoseKey(0, (0, 0, 0))
 SCENE = {"model": {"torus": {}}, "cloth": {"size": [1, 1], "particles": [4, 4], "position": [0, 0, 9]}}
 
@@ -86,6 +89,14 @@ CALLS = [
     (SIMULATION.load_on, {"collider": 0}),
     (SIMULATION.set_particle_velocity, {"particle": 0, "velocity": (0, 0, 0)}),
     (SIMULATION.blow, {"wind": (0, 0, 0), "rate": 1}),
+    (ech.ParticleCollision, {"colliders": [], "thickness": 0.01}),
+    (PARTICLES.set_collider_pose, {"collider": 0, "position": (0, 0, 9)}),
+    (PARTICLES.place_collider, {"collider": 0, "position": (0, 0, 9)}),
+    (PARTICLES.set_collider_friction, {"collider": 0, "friction": 0.5}),
+    (PARTICLES.correct, {"previous_positions": POINTS, "positions": POINTS.copy(), "seconds": 1}),
+    (ech.SurfaceCollision, {"positions": CORNERS, "faces": [[0, 1, 2]], "colliders": [], "thickness": 0.01}),
+    (SURFACES.set_collider_pose, {"collider": 0, "position": (0, 0, 9)}),
+    (SURFACES.correct, {"positions": CORNERS.copy(), "seconds": 1}),
 ]
 #: The errors by which the library or the package may refuse.
 REFUSED = (TypeError, ValueError, IndexError, ech.Error)
@@ -116,6 +127,8 @@ def wrong_values(name, annotation):
     kind = annotation.removesuffix(" | None")
     if kind.startswith("Literal["):
         return [3], ["none such"]
+    if kind.startswith("NDArray"):  # which is changed in place
+        return [], [*ARRAYS, np.zeros((2, 3)), 3]
     if kind.startswith("ArrayLike"):
         return [], [*ARRAYS, [-1], [0.5]] if name in ("pins", "attachments", "threads") else ARRAYS
     if kind in ("MeshLike", "ExactMap", "Deformable", "TetrahedralMesh", "VertexCache"):

@@ -182,6 +182,23 @@ TEST(ParticleCollision, SlidesDownASlopeAsCoulombHasItAndStaysOnAFlatterOne) {
     }
 }
 
+TEST(ParticleCollision, HasTheFrictionOfEachCollider) {
+    const ExactMap box = ExactMap::build(make_box({4, 4, 1}));
+    ParticleCollision collision({{.map = box}, {.map = box, .pose = {Rotation{}, {9, 0, 0}}}}, kThickness);
+    const auto slow_down = [&] {
+        Cloud cloud{{{0, 0, 0.52F}, {9, 0, 0.52F}}};
+        cloud.velocities = {{20, 0, -16}, {20, 0, -16}};
+        cloud.step(collision);
+        return std::array{cloud.velocities[0].x, cloud.velocities[1].x};
+    };
+    collision.set_collider_friction(1, 0);
+    const auto first = slow_down();
+    EXPECT_NEAR(first[0], 12, 1e-2);
+    EXPECT_NEAR(first[1], 20, 1e-2);
+    collision.set_collider_friction(1, 0.25);
+    EXPECT_NEAR(slow_down()[1], 16, 1e-2);
+}
+
 TEST(ParticleCollision, GivesAVelocityThatIsNotThatOfThePositionsTheSameChange) {
     ParticleCollision collision({{.map = ExactMap::build(make_box({4, 4, 1}))}}, kThickness, {.friction = 0});
     Cloud cloud{{{0, 0, 0.5F + float(kThickness)}}};
@@ -356,6 +373,7 @@ TEST(ParticleCollision, RefusesWhatItCannotWorkWithAndChangesNothing) {
     refuse("friction", [&] { ParticleCollision({{.map = box}}, 0.01, {.friction = -1}); });
     refuse("scale of 0", [&] { ParticleCollision({{.map = box, .scale = {}}}, 0.01); });
     ParticleCollision collision({{.map = box}}, kThickness);
+    refuse("friction", [&] { collision.set_collider_friction(0, -1); });
     refuse("length 2", [&] { collision.set_collider_pose(0, {Rotation{2, 0, 0, 0}, {}}); });
     refuse("not finite", [&] { collision.place_collider(0, {Rotation{}, {std::nan(""), 0, 0}}); });
     std::vector<Vec3f> previous(2, {0, 0, 2}), positions(2), velocities(2);

@@ -4,7 +4,9 @@
 
 #include "border.hpp"
 
+#include <echinus/particle_collision.hpp>
 #include <echinus/soft_body.hpp>
+#include <echinus/surface_collision.hpp>
 
 #include <limits>
 
@@ -219,5 +221,38 @@ echinus_simulation_options as_c(const SimulationOptions& options);
 /// @param options  may be null, for the defaults
 /// @throws WrongArgument
 SimulationOptions options_from(const echinus_simulation_options* options);
+
+ECHINUS_REQUIRE_NO_PADDING_AFTER(echinus_particle_collision_options, thread_count);
+/// Calls use() with each member of the structs of C and of C++, either of which may be constant.
+template <typename C, typename Options, typename Use>
+requires std::same_as<std::remove_const_t<C>, echinus_particle_collision_options> &&
+    std::same_as<std::remove_const_t<Options>, ParticleCollisionOptions>
+void for_each_option(C& c, Options& o, const Use& use) {
+    use("friction", c.friction, o.friction, Limits{0, 1e9});
+    use("allow_open_colliders", c.allow_open_colliders, o.allow_open_colliders);
+    use("thread_count", c.thread_count, o.thread_count);
+}
+echinus_particle_collision_options as_c(const ParticleCollisionOptions& options);
+/// @param options  may be null, for the defaults
+/// @throws WrongArgument
+ParticleCollisionOptions options_from(const echinus_particle_collision_options* options);
+
+ECHINUS_REQUIRE_NO_PADDING_AFTER(echinus_surface_collision_options, reserved);
+/// Calls use() with each member of the structs of C and of C++, either of which may be constant.
+template <typename C, typename Options, typename Use>
+requires std::same_as<std::remove_const_t<C>, echinus_surface_collision_options> &&
+    std::same_as<std::remove_const_t<Options>, SurfaceCollisionOptions>
+void for_each_option(C& c, Options& o, const Use& use) {
+    use("friction", c.friction, o.friction, Limits{0, 1e9});
+    use("self_thickness", c.self_thickness, o.self_thickness, Limits{0, 1e9});
+    use("self_collision", c.self_collision, o.self_collision);
+    use("untangle", c.untangle, o.untangle);
+    use("thread_count", c.thread_count, o.thread_count);
+    use.reserved(c.reserved);
+}
+echinus_surface_collision_options as_c(const SurfaceCollisionOptions& options);
+/// @param options  may be null, for the defaults
+/// @throws WrongArgument
+SurfaceCollisionOptions options_from(const echinus_surface_collision_options* options);
 
 } // namespace echinus::c

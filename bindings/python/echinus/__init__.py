@@ -21,6 +21,7 @@ from echinus._colliders import (
     read_vertex_cache,
     rotation_about,
 )
+from echinus._collision import ParticleCollision, SurfaceCollision
 from echinus._deformables import (
     Deformable,
     combine,
@@ -99,11 +100,13 @@ __all__ = [
     "Mesh",
     "MeshLike",
     "MeshReport",
+    "ParticleCollision",
     "PoseKey",
     "RepairReport",
     "Simulation",
     "SimulationOptions",
     "SimulationProfile",
+    "SurfaceCollision",
     "SweepHits",
     "TetrahedraFile",
     "TetrahedralMesh",

@@ -14,6 +14,7 @@ void bind_maps(py::module_& module);
 void bind_tetrahedra(py::module_& module);
 void bind_deformables(py::module_& module);
 void bind_colliders(py::module_& module);
+void bind_collisions(py::module_& module);
 void bind_scenes(py::module_& module);
 void bind_simulations(py::module_& module);
 

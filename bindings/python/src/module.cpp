@@ -16,6 +16,7 @@ PYBIND11_MODULE(_core, module) {
     bind_tetrahedra(module);
     bind_deformables(module);
     bind_colliders(module);
+    bind_collisions(module);
     bind_scenes(module);
     bind_simulations(module);
     module.attr("version") = echinus::version();

@@ -2,7 +2,9 @@
 
 #pragma once
 
+#include <echinus/particle_collision.hpp>
 #include <echinus/soft_body.hpp>
+#include <echinus/surface_collision.hpp>
 
 #include <concepts>
 #include <type_traits>
@@ -132,6 +134,26 @@ void for_each_option(Options& o, const Use& use) {
     use("pressure", o.pressure);
 }
 
+/// Calls use() with the name in Python and the member of each option.
+template <typename Options, typename Use>
+requires std::same_as<std::remove_const_t<Options>, ParticleCollisionOptions>
+void for_each_option(Options& o, const Use& use) {
+    use("friction", o.friction);
+    use("allow_open_colliders", o.allow_open_colliders);
+    use("threads", o.thread_count);
+}
+
+/// Calls use() with the name in Python and the member of each option.
+template <typename Options, typename Use>
+requires std::same_as<std::remove_const_t<Options>, SurfaceCollisionOptions>
+void for_each_option(Options& o, const Use& use) {
+    use("friction", o.friction);
+    use("self_thickness", o.self_thickness);
+    use("self_collision", o.self_collision);
+    use("untangle", o.untangle);
+    use("threads", o.thread_count);
+}
+
 /// Calls use() with the name and the defaults of each struct.
 void for_each_struct(const auto& use) {
     use("repair", RepairOptions{});
@@ -142,6 +164,8 @@ void for_each_struct(const auto& use) {
     use("mesh_cloth", MeshClothOptions{});
     use("soft_body", SoftBodyOptions{});
     use("simulation", SimulationOptions{});
+    use("particle_collision", ParticleCollisionOptions{});
+    use("surface_collision", SurfaceCollisionOptions{});
 }
 
 } // namespace echinus::python

@@ -26,6 +26,9 @@ class Collision {
     /// @pre the collider lets none of them through
     virtual void restart(std::span<const std::uint32_t> /*restarted*/, const Particles&) {}
 
+    /// From the frame that comes on.
+    virtual void set_friction(double friction) = 0;
+
     /// @param collider       where the frame leads it
     /// @param previous_pose  from where it comes
     virtual void begin_frame(const Collider& collider, const RigidTransform& previous_pose) = 0;

@@ -19,6 +19,7 @@ class Collisions {
     Collisions& operator=(const Collisions&) = delete;
 
     void restart(std::span<const std::uint32_t> particles, const Particles& now);
+    void set_friction(std::size_t number, double friction) { collisions_[number]->set_friction(friction); }
     /// @param number    of the collider
     /// @param collider  where the frame leads it
     void begin_frame(std::size_t number, const Collider& collider, const RigidTransform& previous_pose) {

@@ -16,6 +16,7 @@ class ContactCollision final : public Collision {
                      std::span<const std::uint8_t> passes, const SimulationOptions& options);
     std::unique_ptr<Collision> clone() const override { return std::make_unique<ContactCollision>(*this); }
 
+    void set_friction(double friction) override { rules_.friction = static_cast<float>(friction); }
     void begin_frame(const Collider& collider, const RigidTransform& previous_pose) override;
     void relax(Particles& particles, SimulationProfile& profile, const Workers& workers) override;
     Vec3d without_approach(std::size_t i, const Particles& particles, const Vec3d& motion) const override;

@@ -28,6 +28,7 @@ class ExactCollision final : public Collision {
     std::unique_ptr<Collision> clone() const override { return std::make_unique<ExactCollision>(*this); }
 
     void restart(std::span<const std::uint32_t> restarted, const Particles& particles) override;
+    void set_friction(double friction) override { options_.friction = friction; }
     void begin_frame(const Collider& collider, const RigidTransform& previous_pose) override;
     /// To the thickness over the nearest point, with friction.
     void relax(Particles& particles, SimulationProfile& profile, const Workers& workers) override;

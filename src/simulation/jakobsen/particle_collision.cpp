@@ -58,7 +58,7 @@ void require_valid(const SolverStep& step, double seconds) {
 struct ParticleCollision::State {
     State(std::vector<Collider> colliders_in, const SimulationOptions& options_in)
         : options(options_in), colliders(std::move(colliders_in)), next(colliders.size()),
-          workers(options.thread_count) {}
+          frictions(colliders.size(), options.friction), workers(options.thread_count) {}
 
     void begin_step(const SolverStep& step);
     void load_start(const SolverStep& step);
@@ -70,6 +70,7 @@ struct ParticleCollision::State {
     SimulationOptions options;
     std::vector<Collider> colliders;
     std::vector<std::optional<RigidTransform>> next; ///< by collider, where the step that comes leads it
+    std::vector<double> frictions;                   ///< by collider
     Workers workers;
     Particles particles;
     std::optional<Collisions> collisions; ///< none before the first step, and where all begin anew
@@ -125,6 +126,7 @@ void ParticleCollision::State::move_colliders() {
     for (std::size_t i = 0; i < colliders.size(); ++i) {
         const RigidTransform before = colliders[i].pose;
         if (next[i]) colliders[i].pose = *std::exchange(next[i], std::nullopt);
+        collisions->set_friction(i, frictions[i]);
         collisions->begin_frame(i, colliders[i], before);
     }
 }
@@ -149,8 +151,9 @@ Vec3f ParticleCollision::State::corrected_velocity(std::size_t i, const SolverSt
 
 ParticleCollision::ParticleCollision(std::vector<Collider> colliders, double thickness,
                                      const ParticleCollisionOptions& options) {
+    require_within("thickness", thickness, 0, kMostThickness);
+    require_ranges(options);
     const SimulationOptions all = simulation_options(thickness, options);
-    echinus::require_valid(all);
     echinus::require_valid(colliders, all);
     for (Collider& collider : colliders) collider.pose.rotation = collider.pose.rotation.normalised();
     state_ = std::make_unique<State>(std::move(colliders), all);
@@ -174,6 +177,11 @@ void ParticleCollision::place_collider(std::size_t collider_index, const RigidTr
     set_collider_pose(collider_index, pose);
     state_->colliders[collider_index].pose = *std::exchange(state_->next[collider_index], std::nullopt);
     state_->collisions.reset();
+}
+
+void ParticleCollision::set_collider_friction(std::size_t collider_index, double friction) {
+    require_ranges(ParticleCollisionOptions{.friction = friction});
+    state_->frictions[collider_index] = friction;
 }
 
 std::span<const std::uint32_t> ParticleCollision::correct(const SolverStep& step, double seconds) {

@@ -42,4 +42,13 @@ void require_ranges(const SimulationOptions& o) {
     require_within("simulation option pressure", o.pressure, 0, 1e9);
 }
 
+void require_ranges(const ParticleCollisionOptions& o) {
+    require_within("collision option friction", o.friction, 0, 1e9);
+}
+
+void require_ranges(const SurfaceCollisionOptions& o) {
+    require_within("collision option friction", o.friction, 0, 1e9);
+    require_within("collision option self_thickness", o.self_thickness, 0, 1e9);
+}
+
 } // namespace echinus

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <echinus/particle_collision.hpp>
 #include <echinus/soft_body.hpp>
+#include <echinus/surface_collision.hpp>
 
 #include <cstddef>
 #include <optional>
@@ -24,10 +26,14 @@ void require_option(bool condition, const std::string& sentence);
 void require_within(const char* name, double value, double least, double most);
 void require_within(const char* name, const std::optional<double>& value, double least, double most);
 void require_within(const char* name, std::span<const double> values, double least, double most);
+/// Units; that of simulations in bindings/options.toml.
+inline constexpr double kMostThickness = 1e9;
 /// Of each number that has a range in bindings/options.toml.
 void require_ranges(const MeshClothOptions& options);
 void require_ranges(const SoftBodyOptions& options);
 void require_ranges(const SimulationOptions& options);
+void require_ranges(const ParticleCollisionOptions& options);
+void require_ranges(const SurfaceCollisionOptions& options);
 void require_valid(const SimulationOptions& options);
 void require_valid(const Deformable& deformable);
 void require_solver(const Deformable& deformable, const SimulationOptions& options);

@@ -1331,6 +1331,134 @@ ECHINUS_API echinus_status echinus_simulation_set_particle_velocity(echinus_simu
 ECHINUS_API echinus_status echinus_simulation_blow(echinus_simulation* simulation, const double* wind,
                                                    double rate);
 
+// ---- Collision for a solver of one's own (docs/own_solver.md) ----
+
+// Options: particle_collision. By bindings/generate_options from bindings/options.toml: edit that.
+typedef struct echinus_particle_collision_options {
+    size_t size;
+    /// Coulomb's coefficient between particle and model; 0 is ice (0 to 1e9)
+    double friction;
+    /// Accept exact maps of open meshes, for which nothing is promised
+    int32_t allow_open_colliders;
+    /// Threads that share a step; 0: all cores. The same bits with any number (0 to 1024)
+    uint32_t thread_count;
+} echinus_particle_collision_options;
+
+ECHINUS_API void echinus_particle_collision_options_init(echinus_particle_collision_options* options,
+                                                         size_t size);
+// End of options.
+
+/// Keeps the particles of any solver out of models: particle_collision.hpp.
+typedef struct echinus_particle_collision echinus_particle_collision;
+
+/// Keeps what it needs of the maps: all arguments may go afterwards.
+/// @param colliders  [collider_count] where they stand; their velocities do not count
+/// @param thickness  the distance that particles keep from the surface; not negative
+/// @param options    or NULL for the defaults
+/// @return as echinus_simulation_create()
+ECHINUS_API echinus_status echinus_particle_collision_create(
+    const echinus_collider* colliders, size_t collider_count, double thickness,
+    const echinus_particle_collision_options* options, echinus_particle_collision** collision);
+/// May be NULL.
+ECHINUS_API void echinus_particle_collision_destroy(echinus_particle_collision* collision);
+
+/// The solver's next step leads a collider there, evenly and the shorter way round; then it rests.
+ECHINUS_API echinus_status echinus_particle_collision_set_collider_pose(echinus_particle_collision* collision,
+                                                                        size_t index,
+                                                                        const echinus_pose* pose);
+/// The collider is there from now on: nothing is swept on the way.
+ECHINUS_API echinus_status echinus_particle_collision_place_collider(echinus_particle_collision* collision,
+                                                                     size_t index, const echinus_pose* pose);
+
+/// Of one collider, in place of the options' friction.
+ECHINUS_API echinus_status echinus_particle_collision_set_collider_friction(
+    echinus_particle_collision* collision, size_t index, double friction);
+
+/// Corrects the particles after a step of the solver, and moves the colliders. No NaN harms it: see
+/// ParticleCollision::correct().
+/// @param previous_positions  [3 particle_count] where the step began
+/// @param positions       [3 particle_count] in: where the solver has put them. Out: corrected
+/// @param velocities      [3 particle_count] in and out, units per second; or NULL
+/// @param inverse_masses  [particle_count] 0 for pinned particles; or NULL: all are pushed
+/// @param seconds         that the step took; positive
+/// @param corrected       out: [corrected_count] the particles that were corrected, ascending; until the
+///                        next call; or NULL
+/// @param corrected_count out; or NULL
+ECHINUS_API echinus_status echinus_particle_collision_correct(
+    echinus_particle_collision* collision, const float* previous_positions, float* positions,
+    float* velocities, const float* inverse_masses, size_t particle_count, double seconds,
+    const uint32_t** corrected, size_t* corrected_count);
+
+/// How often a particle has ended a step inside an exact map, or behind its surface, though it was outside.
+ECHINUS_API uint64_t echinus_particle_collision_lost_count(const echinus_particle_collision* collision);
+
+// Options: surface_collision. By bindings/generate_options from bindings/options.toml: edit that.
+typedef struct echinus_surface_collision_options {
+    size_t size;
+    /// Coulomb's coefficient; 0 is ice (0 to 1e9)
+    double friction;
+    /// Distance that layers keep from each other; near small faces less. By default the thickness (0 to 1e9),
+    /// or ECHINUS_THICKNESS_CHOSEN
+    double self_thickness;
+    /// Faces do not meet each other either
+    int32_t self_collision;
+    /// A start that intersects, or is inside the model, is parted instead of refused
+    int32_t untangle;
+    /// Threads that share a step; 0: all cores. The same bits with any number (0 to 1024)
+    uint32_t thread_count;
+    /// 0
+    uint32_t reserved;
+} echinus_surface_collision_options;
+
+ECHINUS_API void echinus_surface_collision_options_init(echinus_surface_collision_options* options,
+                                                        size_t size);
+// End of options.
+
+/// Keeps the faces that join the particles of any solver off models and off each other:
+/// surface_collision.hpp.
+typedef struct echinus_surface_collision echinus_surface_collision;
+
+/// Copies the arrays and keeps what it needs of the maps.
+/// @param positions  [3 particle_count] where the particles begin: no faces meet there, but see untangle
+/// @param faces      [3 face_count] of those particles; at least one
+/// @param colliders  [collider_count] where they stand; their velocities do not count
+/// @param thickness  the distance to keep from colliders; not negative
+/// @param options    or NULL for the defaults
+/// @return as echinus_simulation_create()
+ECHINUS_API echinus_status echinus_surface_collision_create(const float* positions, size_t particle_count,
+                                                            const uint32_t* faces, size_t face_count,
+                                                            const echinus_collider* colliders,
+                                                            size_t collider_count, double thickness,
+                                                            const echinus_surface_collision_options* options,
+                                                            echinus_surface_collision** collision);
+/// May be NULL.
+ECHINUS_API void echinus_surface_collision_destroy(echinus_surface_collision* collision);
+
+/// As echinus_particle_collision_set_collider_pose().
+ECHINUS_API echinus_status echinus_surface_collision_set_collider_pose(echinus_surface_collision* collision,
+                                                                       size_t index,
+                                                                       const echinus_pose* pose);
+
+/// Corrects the particles after a step of the solver, which began where the last one ended, and moves the
+/// colliders.
+/// @param positions       [3 particle_count] in: where the solver has put them. Out: corrected
+/// @param velocities      [3 particle_count] in and out, units per second; or NULL
+/// @param particle_count  as the collision has
+/// @param seconds         that the step took; positive
+/// @param corrected       out: [corrected_count] the particles that were corrected, ascending; until the
+///                        next call; or NULL
+/// @param corrected_count out; or NULL
+ECHINUS_API echinus_status echinus_surface_collision_correct(echinus_surface_collision* collision,
+                                                             float* positions, float* velocities,
+                                                             size_t particle_count, double seconds,
+                                                             const uint32_t** corrected,
+                                                             size_t* corrected_count);
+
+/// [3 particle_count] where the particles are, and nothing meets: the address stays the same.
+ECHINUS_API const float* echinus_surface_collision_positions(const echinus_surface_collision* collision);
+/// Pairs of parts of faces for which no room was proven, summed over all steps; 0: no faces meet.
+ECHINUS_API uint64_t echinus_surface_collision_unresolved_count(const echinus_surface_collision* collision);
+
 // ---- Scenes: simulations as JSON (docs/scenes.md) ----
 
 typedef struct echinus_scene echinus_scene;

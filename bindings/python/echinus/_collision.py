@@ -1,0 +1,219 @@
+"""Collision for a solver of one's own."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from echinus import _core
+from echinus._arguments import index, list_of_kind, number, quaternion, vector
+from echinus._colliders import Collider
+
+
+class ParticleCollision:
+    """Keeps the particles of any solver out of models.
+
+    After each step of the solver, :meth:`correct` takes back what led a particle inside or through a model, and leaves
+    the solver all else. Between exact maps a particle that began a step outside ends it outside, however fast it or the
+    models moved. Several threads may call; one at a time computes.
+
+    Parameters
+    ----------
+    colliders
+        Where they stand; their velocities do not count.
+    thickness
+        The distance that particles keep from the surface; not negative.
+    friction
+        Coulomb's coefficient between particle and model; 0 is ice (0 to 1e9).
+    allow_open_colliders
+        Accept exact maps of open meshes, for which nothing is promised.
+    threads
+        Threads that share a step; 0: all cores. The same bits with any number (0 to 1024).
+
+    Raises
+    ------
+    Error
+        ``invalid_options``, naming what is at fault.
+    """
+
+    _collision: _core.ParticleCollision
+
+    def __init__(
+        self,
+        colliders: Sequence[Collider],
+        thickness: float,
+        *,
+        friction: float = 0.5,
+        allow_open_colliders: bool = False,
+        threads: int = 1,
+    ) -> None:
+        options = dict(locals())
+        models = [collider._arguments() for collider in list_of_kind("colliders", colliders, Collider)]
+        self._collision = _core.ParticleCollision(models, number("thickness", thickness), options)
+
+    def set_collider_pose(self, collider: int, position: Sequence[float], rotation: Sequence[float] = (1, 0, 0, 0)) -> None:
+        """The solver's next step leads a collider there, evenly and the shorter way round; then it rests.
+
+        Parameters
+        ----------
+        collider
+            Its number.
+        rotation
+            Unit quaternion w, x, y, z.
+        """
+        self._collision.set_collider_pose(index("collider", collider), vector("position", position), quaternion("rotation", rotation))
+
+    def place_collider(self, collider: int, position: Sequence[float], rotation: Sequence[float] = (1, 0, 0, 0)) -> None:
+        """The collider is there from now on, as after a cut in a film: nothing is swept on the way."""
+        self._collision.place_collider(index("collider", collider), vector("position", position), quaternion("rotation", rotation))
+
+    def set_collider_friction(self, collider: int, friction: float) -> None:
+        """Of one collider, in place of the friction of all."""
+        self._collision.set_collider_friction(index("collider", collider), number("friction", friction))
+
+    def correct(
+        self,
+        previous_positions: ArrayLike,
+        positions: NDArray[np.float32],
+        velocities: NDArray[np.float32] | None = None,
+        inverse_masses: ArrayLike | None = None,
+        *,
+        seconds: float,
+    ) -> NDArray[np.uint32]:
+        """Corrects the particles after a step of the solver, in place, and moves the colliders.
+
+        A particle whose position is not finite is left as it is and meets nothing. One that does not begin where the last
+        step ended begins anew there.
+
+        Parameters
+        ----------
+        previous_positions
+            (n, 3) Where the step began.
+        positions
+            (n, 3) Where the solver has put the particles; corrected in place, so contiguous float32.
+        velocities
+            (n, 3) Corrected, too, in units per second.
+        inverse_masses
+            (n,) 0 for pinned particles, which nothing pushes.
+        seconds
+            That the step took.
+
+        Returns
+        -------
+        The particles that were corrected, ascending.
+
+        Raises
+        ------
+        Error
+            ``invalid_options`` for arrays of different sizes, masses that are negative and a time that is not positive.
+        """
+        return self._collision.correct(previous_positions, positions, velocities, inverse_masses, number("seconds", seconds))
+
+    @property
+    def lost_count(self) -> int:
+        """How often a particle has ended a step inside an exact map, or behind its surface, though it was outside."""
+        return self._collision.lost_count
+
+
+class SurfaceCollision:
+    """Keeps the faces that join the particles of any solver off models and off each other.
+
+    No face meets a model, nor another face, after any :meth:`correct`, within the limits of docs/surfaces.md. Several
+    threads may call; one at a time computes.
+
+    Parameters
+    ----------
+    positions
+        (n, 3) Where the particles begin: no faces meet there, but see ``untangle``.
+    faces
+        (m, 3) Of those particles.
+    colliders
+        Where they stand; their velocities do not count.
+    thickness
+        The distance to keep from colliders; not negative.
+    friction
+        Coulomb's coefficient; 0 is ice (0 to 1e9).
+    self_thickness
+        Distance that layers keep from each other; near small faces less. By default the thickness (0 to 1e9).
+    self_collision
+        Faces do not meet each other either.
+    untangle
+        A start that intersects, or is inside the model, is parted instead of refused.
+    threads
+        Threads that share a step; 0: all cores. The same bits with any number (0 to 1024).
+
+    Raises
+    ------
+    Error
+        ``invalid_options``, naming what is at fault or intersects.
+    """
+
+    _collision: _core.SurfaceCollision
+
+    def __init__(
+        self,
+        positions: ArrayLike,
+        faces: ArrayLike,
+        colliders: Sequence[Collider],
+        thickness: float,
+        *,
+        friction: float = 0.5,
+        self_thickness: float | None = None,
+        self_collision: bool = True,
+        untangle: bool = False,
+        threads: int = 1,
+    ) -> None:
+        options = dict(locals())
+        models = [collider._arguments() for collider in list_of_kind("colliders", colliders, Collider)]
+        start, joined = _core.float_array(positions), _core.face_array(faces)
+        self._collision = _core.SurfaceCollision(start, joined, models, number("thickness", thickness), options)
+
+    def set_collider_pose(self, collider: int, position: Sequence[float], rotation: Sequence[float] = (1, 0, 0, 0)) -> None:
+        """The solver's next step leads a collider there, evenly and the shorter way round; then it rests.
+
+        Parameters
+        ----------
+        collider
+            Its number.
+        rotation
+            Unit quaternion w, x, y, z.
+        """
+        self._collision.set_collider_pose(index("collider", collider), vector("position", position), quaternion("rotation", rotation))
+
+    def correct(
+        self,
+        positions: NDArray[np.float32],
+        velocities: NDArray[np.float32] | None = None,
+        *,
+        seconds: float,
+    ) -> NDArray[np.uint32]:
+        """Corrects the particles after a step of the solver, in place, and moves the colliders.
+
+        The step began where the last one ended.
+
+        Parameters
+        ----------
+        positions
+            (n, 3) Where the solver has put the particles; corrected in place, so contiguous float32.
+        velocities
+            (n, 3) Corrected, too, in units per second.
+        seconds
+            That the step took.
+
+        Returns
+        -------
+        The particles that were corrected, ascending.
+
+        Raises
+        ------
+        Error
+            ``invalid_options`` for arrays of other sizes and a time that is not positive.
+        """
+        return self._collision.correct(positions, velocities, number("seconds", seconds))
+
+    @property
+    def unresolved_count(self) -> int:
+        """Pairs of parts of faces for which no room was proven, summed over all steps; 0: no faces meet."""
+        return self._collision.unresolved_count
