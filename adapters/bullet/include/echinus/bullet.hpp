@@ -3,6 +3,7 @@
 #include <echinus/collider.hpp>
 #include <echinus/error.hpp>
 #include <echinus/exact_map.hpp>
+#include <echinus/particle_collision.hpp>
 
 #include <BulletCollision/BroadphaseCollision/btBroadphaseInterface.h>
 #include <BulletCollision/BroadphaseCollision/btCollisionAlgorithm.h>
@@ -19,11 +20,11 @@
 #include <LinearMath/btTransformUtil.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdint>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <tuple>
@@ -227,32 +228,6 @@ class NodeContacts {
     std::vector<float> depths_;
 };
 
-/// A collider that moves during a step, around its place at the end of it: whatever is near is near 0 there,
-/// so that floats resolve it in a world of any size.
-class MovedCollider {
-  public:
-    MovedCollider(Collider now, RigidTransform before)
-        : origin_(now.pose.translation), now_(std::move(now)), before_(before) {
-        now_.pose.translation = {};
-        before_.translation = before_.translation - origin_;
-    }
-
-    Vec3f to_local(const btVector3& point) const { return Vec3f(to_echinus(point) - origin_); }
-    btVector3 to_world(const Vec3f& point) const { return to_bullet(Vec3d(point) + origin_); }
-    SweepHit sweep(const Vec3f& from, const Vec3f& to) const {
-        return echinus::sweep(now_, before_, from, to);
-    }
-    /// Where a point would be that had been taken along.
-    Vec3f carried(const Vec3f& from) const {
-        return Vec3f(now_.pose.to_world(before_.to_local(Vec3d(from))));
-    }
-
-  private:
-    Vec3d origin_;
-    Collider now_;
-    RigidTransform before_;
-};
-
 /// A soft body and an object with a MapShape, which may touch in this step.
 struct Meeting {
     btSoftBody* body = nullptr;
@@ -372,6 +347,7 @@ struct PlacedShape {
     int object_id; ///< that of its proxy in the broad phase
     int number;    ///< of the object's MapShapes
     const MapShape* shape;
+    btVector3 scale;                 ///< of the shape
     btTransform pose, previous_pose; ///< at the end of this step and of the last one
 
     auto key() const { return std::tuple(object_id, number); }
@@ -428,6 +404,7 @@ class PlacedShapes {
                                .object_id = object.getBroadphaseHandle()->getUid(),
                                .number = count++,
                                .shape = map_shape,
+                               .scale = map_shape->getLocalScaling(),
                                .pose = object.getWorldTransform() * in_object,
                                .previous_pose = {}};
             const PlacedShape* last = find_last(placed);
@@ -456,95 +433,98 @@ class PlacedShapes {
     std::vector<PlacedShape> shapes_, last_; ///< ascending by key
 };
 
-/// Puts nodes of a soft body that passed a MapShape during the step, or ended inside, back to its surface.
+/// Keeps the nodes of a soft body out of the MapShapes near it, from step to step.
 class NodeKeeper {
   public:
-    NodeKeeper(btSoftBody& body, const PlacedShape& placed)
-        : meeting_{&body, placed.object, placed.shape}, now_(placed.shape->at(placed.pose)),
-          collider_(now_, to_echinus(placed.previous_pose)) {}
-
-    /// @param inside  memory
-    /// @return false when there was no such node
-    bool keep_outside(NodeContacts& inside) {
-        btSoftBody& body = *meeting_.body;
-        inside.find({&now_, 1}, body, 0);
-        bool moved = false;
-        std::size_t k = 0;
-        for (int i = 0; i < body.m_nodes.size(); ++i) {
-            btSoftBody::Node& node = body.m_nodes[i];
-            const bool is_inside = k < inside.count() && inside.node(k) == i;
-            if (!is_held(node)) {
-                if (stop(node))
-                    moved = true;
-                else if (is_inside) { // and was when the step began
-                    put(node, inside.point(k) + inside.normal(k) * gap(node), inside.normal(k));
-                    moved = true;
-                }
-            }
-            if (is_inside) ++k;
+    /// At the end of a step. @param near  the shapes that nodes may have met
+    void keep_outside(btSoftBody& body, std::span<const PlacedShape* const> near) {
+        if (near.empty() || !(body.m_sst.sdt > 0)) return collision_.reset();
+        if (!goes_on(near)) begin(body, near);
+        for (std::size_t i = 0; i < near.size(); ++i) {
+            shapes_[i] = *near[i];
+            collision_->set_collider_pose(i, around_origin(near[i]->pose));
+            collision_->set_collider_friction(i, friction(body, *near[i]));
         }
-        if (moved) body.activate();
-        return moved;
+        load(body);
+        const SolverStep step{previous_, positions_, velocities_, inverse_masses_};
+        const auto corrected = collision_->correct(step, double{body.m_sst.sdt});
+        for (const std::uint32_t i : corrected) {
+            btSoftBody::Node& node = body.m_nodes[static_cast<int>(i)];
+            node.m_x = to_bullet(Vec3d(positions_[i]) + origin_);
+            node.m_v = to_bullet(velocities_[i]);
+        }
+        if (!corrected.empty()) body.activate();
     }
 
   private:
-    /// How far from the surface a node is put: enough for floats, and not so much that one sees it. Far from
-    /// the origin it is some of the steps between Bullet's numbers there, to which the place is rounded.
-    float gap(const btSoftBody::Node& node) const {
-        const auto radius = static_cast<float>(meeting_.shape->radius());
-        const btScalar farthest = node.m_x.absolute()[node.m_x.absolute().maxAxis()];
-        return std::max(std::clamp(static_cast<float>(meeting_.margin()), 1e-5F * radius, 1e-3F * radius),
-                        static_cast<float>(4 * std::numeric_limits<btScalar>::epsilon() * farthest));
+    /// Whether the same shapes are near as in the last step, and begin where they were.
+    bool goes_on(std::span<const PlacedShape* const> near) const {
+        return collision_ &&
+               std::ranges::equal(near, shapes_, [](const PlacedShape* now, const PlacedShape& last) {
+                   return now->key() == last.key() && now->object == last.object &&
+                          now->shape == last.shape && now->shape->getLocalScaling() == last.scale &&
+                          now->previous_pose == last.pose;
+               });
     }
-
-    static bool is_held(const btSoftBody::Node& node) { return node.m_im == 0 || node.m_battach != 0; }
-
-    /// Puts a node back that went in during the step. @return false when it did not
-    bool stop(btSoftBody::Node& node) const {
-        const Vec3f to = collider_.to_local(node.m_x);
-        const bool sleeps = !meeting_.body->isActive(); // then it stays
-        const Vec3f from = sleeps ? to : collider_.to_local(node.m_q);
-        const SweepHit hit = collider_.sweep(from, to);
-        if (!hit.found() || !hit.entering) return false;
-        put(node, free_place(from, to, hit, gap(node)), to_bullet(hit.normal));
-        return true;
-    }
-
-    /// Near where the node was going: along the face that it met, or where it met it, or where it came from,
-    /// carried along with the collider. A place is free when no surface lies on the way there, as Bullet's
-    /// numbers have it.
-    btVector3 free_place(const Vec3f& from, const Vec3f& to, const SweepHit& hit, float gap) const {
-        const Vec3f carried = collider_.carried(from);
-        const Vec3f beside = hit.point + hit.normal * gap;
-        const Vec3f along = to + hit.normal * dot(hit.normal, beside - to);
-        for (const Vec3f& place :
-             std::array{along - rubbed(along - carried, hit.normal, length(along - to)), beside}) {
-            const btVector3 rounded = collider_.to_world(place);
-            if (!collider_.sweep(from, collider_.to_local(rounded)).found()) return rounded;
+    void begin(const btSoftBody& body, std::span<const PlacedShape* const> near) {
+        shapes_.clear();
+        origin_ = {};
+        // Doubles are rounded to floats around the body, floats not at all.
+        if (sizeof(btScalar) > sizeof(float)) origin_ = to_echinus(body.m_nodes[0].m_x);
+        if (!is_finite(origin_)) origin_ = {};
+        std::vector<Collider> colliders;
+        for (const PlacedShape* shape : near) {
+            shapes_.push_back(*shape);
+            colliders.push_back(shape->shape->at(shape->previous_pose));
+            colliders.back().pose = around_origin(shape->previous_pose);
         }
-        return collider_.to_world(carried);
+        collision_.emplace(std::move(colliders), gap(body, near));
     }
 
-    /// A way along the surface, less what Coulomb's friction takes of it, after a push of this length.
-    Vec3f rubbed(const Vec3f& way, const Vec3f& normal, float push) const {
-        const Vec3f slip = way - normal * dot(normal, way);
-        const float size = length(slip);
-        const auto friction = static_cast<float>(meeting_.friction());
-        return size > 0 ? slip * std::min(1.0F, friction * push / size) : Vec3f{};
+    /// How far from the surface a node is put: enough for floats, and not so much that one sees it. Far from
+    /// the origin it is some of the steps between Bullet's numbers there.
+    static double gap(const btSoftBody& body, std::span<const PlacedShape* const> near) {
+        double gap = double{SIMD_INFINITY}, farthest = 0;
+        for (const PlacedShape* shape : near) {
+            const double radius{shape->shape->radius()};
+            const double margin{body.getCollisionShape()->getMargin() + shape->shape->getMargin()};
+            gap = std::min(gap, std::clamp(margin, 1e-5 * radius, 1e-3 * radius));
+            const btVector3 place = shape->pose.getOrigin().absolute();
+            farthest = std::max(farthest, double{place[place.maxAxis()]});
+        }
+        return std::max(gap, double{4 * std::numeric_limits<btScalar>::epsilon()} * farthest);
+    }
+    static double friction(const btSoftBody& body, const PlacedShape& shape) {
+        return std::max(double{body.m_cfg.kDF * shape.object->getFriction()}, 0.0);
     }
 
-    /// The node is there, has the velocity of its corrected way along the surface, and no longer moves in.
-    void put(btSoftBody::Node& node, const btVector3& place, const btVector3& normal) const {
-        const btVector3 shift = place - node.m_x;
-        node.m_x = place;
-        node.m_v += (shift - normal * shift.dot(normal)) / meeting_.body->m_sst.sdt;
-        const btVector3 relative = node.m_v - meeting_.velocity_at(node.m_x);
-        node.m_v -= normal * btMin(relative.dot(normal), btScalar(0));
+    RigidTransform around_origin(const btTransform& pose) const {
+        RigidTransform result = to_echinus(pose);
+        result.translation = result.translation - origin_;
+        return result;
+    }
+    Vec3f around_origin(const btVector3& point) const { return Vec3f(to_echinus(point) - origin_); }
+
+    void load(const btSoftBody& body) {
+        const auto count = static_cast<std::size_t>(body.m_nodes.size());
+        for (auto* vectors : {&previous_, &positions_, &velocities_}) vectors->resize(count);
+        inverse_masses_.resize(count);
+        const bool sleeps = !body.isActive(); // then it stays
+        for (std::size_t i = 0; i < count; ++i) {
+            const btSoftBody::Node& node = body.m_nodes[static_cast<int>(i)];
+            positions_[i] = around_origin(node.m_x);
+            previous_[i] = sleeps ? positions_[i] : around_origin(node.m_q);
+            velocities_[i] = Vec3f(to_echinus(node.m_v));
+            const bool is_held = node.m_im == 0 || node.m_battach != 0;
+            inverse_masses_[i] = is_held ? 0.0F : 1.0F;
+        }
     }
 
-    Meeting meeting_;
-    Collider now_;
-    MovedCollider collider_;
+    std::vector<PlacedShape> shapes_;            ///< in the last step
+    std::optional<ParticleCollision> collision_; ///< with these
+    Vec3d origin_;                               ///< of its world
+    std::vector<Vec3f> previous_, positions_, velocities_;
+    std::vector<float> inverse_masses_;
 };
 
 /// Bullet's default solver of soft bodies, which after each step puts nodes that got into a MapShape back to
@@ -593,13 +573,16 @@ class Solver : public btDefaultSoftBodySolver {
             shapes_.clear();
         else
             shapes_.update(broadphase(), seconds);
-        for (int i = 0; i < m_softBodySet.size(); ++i) keep_outside(*m_softBodySet[i]);
+        // A keeper that gets another body notices that nothing goes on.
+        keepers_.resize(static_cast<std::size_t>(m_softBodySet.size()));
+        for (int i = 0; i < m_softBodySet.size(); ++i) {
+            find_near(*m_softBodySet[i]);
+            keepers_[static_cast<std::size_t>(i)].keep_outside(*m_softBodySet[i], near_);
+        }
         for (SoftBodyPair* pair : pairs_) pair->end_step();
     }
 
   private:
-    static constexpr int kMostPasses = 4;
-
     /// The soft body asks all shapes beside it in one call.
     void add_contacts(const btSoftBody& body) {
         beside_.clear();
@@ -622,20 +605,6 @@ class Solver : public btDefaultSoftBodySolver {
 
     /// Bullet itself sets the boxes of soft bodies in it.
     btBroadphaseInterface& broadphase() const { return *m_softBodySet[0]->getWorldInfo()->m_broadphase; }
-
-    /// A particle that one collider pushed, another may have to push back.
-    void keep_outside(btSoftBody& body) {
-        const PlacedShape* alone = nullptr; // in the pass before
-        for (int pass = 0; pass < kMostPasses; ++pass) {
-            find_near(body);
-            if (near_.size() == 1 && near_[0] == alone) return;
-            alone = near_.size() == 1 ? near_[0] : nullptr;
-            bool moved = false;
-            for (const PlacedShape* shape : near_)
-                moved = NodeKeeper(body, *shape).keep_outside(inside_) || moved;
-            if (!moved) return;
-        }
-    }
 
     void find_near(btSoftBody& body) {
         near_.clear();
@@ -713,7 +682,7 @@ class Solver : public btDefaultSoftBodySolver {
     std::vector<Collider> placed_;         ///< their shapes
     NodeContacts contacts_;                ///< with those
     std::vector<const PlacedShape*> near_; ///< those that one soft body's nodes may have met
-    NodeContacts inside_;                  ///< nodes that ended the step inside one of them
+    std::vector<NodeKeeper> keepers_;      ///< [soft body]
 };
 
 } // namespace echinus::bullet
