@@ -16,9 +16,9 @@ const EXAMPLES: readonly Example[] = [
     { name: 'torus', title: 'A cloth on a torus', caption: '2\u2009500 particles', link: 'model=torus&particles=2500', model: 'torus' },
     { name: 'figure', title: 'A skirt, dancing', caption: 'on a figure that moves', link: 'model=figure', model: 'figure' },
     { name: 'organ', title: 'A soft organ', caption: 'push it with the probe', link: 'model=organ&hand=model', model: 'organ' },
-    { name: 'ring', title: 'Through a ring', caption: 'pulled through, let go', link: 'model=ring&self=true', model: 'ring' },
+    { name: 'ring', title: 'Through a ring', caption: 'pulled through, let go', link: 'model=ring', model: 'ring' },
     { name: 'flag', title: 'A flag in the wind', caption: 'on a pole that you can shake', link: 'model=flag', model: 'flag' },
-    { name: 'layers', title: 'Ten layers', caption: 'none through another', link: 'model=layers&particles=1000&self=true', model: 'layers' },
+    { name: 'layers', title: 'Ten layers', caption: 'none through another', link: 'model=layers&particles=1000', model: 'layers' },
     { name: 'beside', title: 'Exact or nearly', caption: 'beside an approximate map', link: 'beside=map', model: 'horse' },
 ];
 

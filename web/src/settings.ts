@@ -71,7 +71,7 @@ export const DEFAULTS: Readonly<Settings> = {
     cloths: 1,
     friction: 0.5,
     surfaces: true,
-    self: false,
+    self: true,
     thickness: 0.2,
     wind: 0,
     motion: 'still',

@@ -60,7 +60,7 @@ async function soak(browser, name, link) {
         residents.push(residentMb());
     }
     const counts = await page.evaluate(() => Object.fromEntries(Object.entries(globalThis.counts).map(([name, seen]) => [name, [...seen].filter((text) => text !== '–')])));
-    const self = link.includes('self=true'), halves = link.includes('beside');
+    const self = !link.includes('self=false') && !link.includes('surfaces=false'), halves = link.includes('beside');
     const half = LOOKS / 2, growth = (values) => median(values.slice(half)) - median(values.slice(0, half));
     const faults = [
         ...(counts.inside.some((text) => text !== '0') ? [`inside: ${counts.inside}`] : []),
