@@ -82,7 +82,7 @@ def strain(record):
 
 def solvers(folder):
     results = Results(folder, "solvers")
-    designs = ("newton", "converged", "jakobsen")
+    designs = ("newton", "eight steps", "converged", "jakobsen")
     moving = [["a sheet", "particles", "k, N/m"] + [f"strain of {d}, %" for d in designs] + [f"{d}, ms" for d in designs]]
     for problem in results.distinct("problem", state="moving"):
         for one in results.where(state="moving", problem=problem, design="newton"):

@@ -36,6 +36,7 @@ struct Design {
 };
 
 constexpr Design kNewton{.name = "newton"};
+constexpr Design kEightSteps{.name = "eight steps", .newton_steps = 8};
 constexpr Design kConverged{.name = "converged", .newton_steps = 200, .tolerance = 1e-6};
 constexpr Design kJakobsen{.name = "jakobsen", .solver = SolverKind::Jakobsen, .time_step = 1.0 / 240};
 
@@ -150,7 +151,7 @@ struct Size {
 /// The designs take turns of a few frames, so that other load on the machine slows all alike.
 void add_moving(const Problem& problem, const Size& size, double stiffness, const Setting& setting,
                 Records& records) {
-    std::vector<Design> designs{kNewton};
+    std::vector<Design> designs{kNewton, kEightSteps};
     if (stiffness == size.stiffnesses[0]) designs.push_back(kJakobsen); // for which it means nothing
     if (size.is_converged) designs.push_back(kConverged);
     std::vector<Runner> runners;
