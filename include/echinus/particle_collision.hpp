@@ -50,9 +50,9 @@ struct SolverStep {
 /// Between exact maps a particle that began a step outside ends it outside and on its side of every surface,
 /// however fast it or the models moved and however thin they are: it is swept from where the step began, as
 /// seen from each collider, which goes evenly from its pose before to its pose now (Collider's sweep()).
-/// Exceptions, which lost_count() counts, are particles between colliders that leave them no room, and gaps
-/// of open meshes. A particle that begins inside is put to the nearest surface point. Distance maps and
-/// custom maps are not swept: they push out what ended inside.
+/// Exceptions, which lost_count() counts, are particles between colliders that leave them less room than the
+/// thickness, and gaps of open meshes. A particle that begins inside is put to the nearest surface point.
+/// Distance maps and custom maps are not swept: they push out what ended inside.
 ///
 /// Between steps it keeps what it knows of the surfaces around each particle, so that those that hardly move
 /// need no query; this is a cache, and where each particle was free last. Copies are independent. Different
@@ -100,9 +100,9 @@ class ParticleCollision {
     /// where the last step ended (the solver has put it elsewhere) begins anew there; with another number of
     /// particles all do.
     ///
-    /// Cost: O(n) for each collider, 20 ns a particle away from surfaces and below 1 us for one that
-    /// moves along them (docs/own_solver.md). Allocates in the first step, with another number of particles
-    /// and after place_collider(), else nothing.
+    /// Cost: O(n) for each collider that particles may be near, by bounding spheres; 20 ns a particle away
+    /// from surfaces and below 1 us for one that moves along them (docs/own_solver.md). Allocates in the
+    /// first step, with another number of particles and after place_collider(), else nothing.
     /// @param seconds  that the step took; positive
     /// @return the particles whose positions were corrected, ascending; until the next call
     /// @throws Error InvalidOptions for arrays of different sizes, an inverse mass that is negative or not

@@ -141,6 +141,29 @@ TEST(ParticleCollision, LosesNoParticleHoweverFastBetweenModelsThatMoveAndTurn) 
     }
 }
 
+TEST(ParticleCollision, MissesNoColliderThatComesFromAfarOrIntoWhichAnotherOnePushes) {
+    // A plate that was far away for some steps, moving, passes the particle in one; then it pushes the
+    // particle to where another stands, which no particle was near.
+    const ExactMap plate = ExactMap::build(make_box({2, 2, 0.01}));
+    ParticleCollision collision({{.map = plate, .pose = {Rotation{}, {0, 0, -500}}},
+                                 {.map = plate, .pose = {Rotation{}, {0, 0, 40}}}},
+                                kThickness);
+    Cloud cloud{{{0.3F, 0.2F, 0}}};
+    for (int n = 1; n <= 3; ++n) {
+        collision.set_collider_pose(0, {Rotation::about({0, 0, 1}, n), {0, 0, -500.0 + 100 * n}});
+        cloud.velocities[0] = {};
+        cloud.step(collision);
+        EXPECT_EQ(cloud.positions[0].z, 0);
+    }
+    collision.set_collider_pose(0, {Rotation{}, {0, 0, 30}});
+    cloud.step(collision);
+    EXPECT_NEAR(cloud.positions[0].z, 30.005 + kThickness, 1e-3);
+    cloud.velocities[0] = {};
+    collision.set_collider_pose(0, {Rotation{}, {0, 0, 39.985}});
+    cloud.step(collision);
+    EXPECT_EQ(collision.lost_count(), 1u); // between the two is less room than the thickness
+}
+
 TEST(ParticleCollision, StopsAFastParticleOnAThinPlateWithTheVelocityThatIsLeft) {
     ParticleCollision collision({{.map = ExactMap::build(make_box({2, 2, 0.001}))}}, kThickness,
                                 {.friction = 0});

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "geometry/box.hpp"
 #include "geometry/workers.hpp"
 #include "simulation/particles.hpp"
 #include "simulation/state/state_archive.hpp"
@@ -32,6 +33,11 @@ class Collision {
     /// @param collider       where the frame leads it
     /// @param previous_pose  from where it comes
     virtual void begin_frame(const Collider& collider, const RigidTransform& previous_pose) = 0;
+    /// Whether no particle can meet the collider in this frame, nor come within its thickness.
+    /// @param starts, ends  boxes around all particles as the frame begins and ends
+    virtual bool is_away(const AlignedBox<double>& /*starts*/, const AlignedBox<double>& /*ends*/) const {
+        return false;
+    }
     /// One relaxation of all particles.
     /// @param workers  may share them
     virtual void relax(Particles& particles, SimulationProfile& profile, const Workers& workers) = 0;

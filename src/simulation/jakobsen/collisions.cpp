@@ -30,10 +30,11 @@ Collisions::Collisions(const Deformable& deformable, const std::vector<Collider>
     : rescues_(options.keep_free) {
     for (std::size_t i = 0; i < colliders.size(); ++i)
         collisions_.push_back(make_collision(colliders[i], particles, let_through(deformable, i), options));
+    is_away_.resize(collisions_.size());
     unproven_.reserve(collisions_.size() * particles.count());
 }
 
-Collisions::Collisions(const Collisions& other) : rescues_(other.rescues_) {
+Collisions::Collisions(const Collisions& other) : is_away_(other.is_away_), rescues_(other.rescues_) {
     for (const auto& collision : other.collisions_) collisions_.push_back(collision->clone());
     unproven_.reserve(other.unproven_.capacity());
 }
@@ -42,15 +43,30 @@ void Collisions::restart(std::span<const std::uint32_t> particles, const Particl
     for (const auto& collision : collisions_) collision->restart(particles, now);
 }
 
+void Collisions::leave_out_away(const Particles& particles) {
+    const std::size_t count = particles.count();
+    AlignedBox<double> starts, ends;
+    for (std::size_t i = 0; i < count; ++i) {
+        starts.add(Vec3d(particles.frame_start[i]));
+        ends.add(Vec3d(particles.positions[i]));
+    }
+    for (std::size_t i = 0; i < collisions_.size(); ++i)
+        is_away_[i] = count == 0 || collisions_[i]->is_away(starts, ends) ? 1 : 0;
+}
+
 void Collisions::relax(Particles& particles, SimulationProfile& profile, const Workers& workers) {
-    for (const auto& collision : collisions_) collision->relax(particles, profile, workers);
+    for (std::size_t i = 0; i < collisions_.size(); ++i)
+        if (is_away_[i] == 0) collisions_[i]->relax(particles, profile, workers);
     profile.query_count += collisions_.size() * particles.count();
 }
 
 void Collisions::keep_free(Particles& particles, SimulationProfile& profile) {
     unproven_.clear();
-    for (const auto& collision : collisions_) {
-        const auto found = collision->find_unproven(particles);
+    // What was pushed by one collider may be near another.
+    if (std::ranges::count(is_away_, std::uint8_t{1}) > 0) leave_out_away(particles);
+    for (std::size_t i = 0; i < collisions_.size(); ++i) {
+        if (is_away_[i] != 0) continue;
+        const auto found = collisions_[i]->find_unproven(particles);
         unproven_.insert(unproven_.end(), found.begin(), found.end());
     }
     for (const std::uint32_t particle : unproven_) {

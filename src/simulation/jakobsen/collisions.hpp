@@ -25,6 +25,8 @@ class Collisions {
     void begin_frame(std::size_t number, const Collider& collider, const RigidTransform& previous_pose) {
         collisions_[number]->begin_frame(collider, previous_pose);
     }
+    /// In this frame leaves out the colliders that no particle is near, now and when keep_free() begins.
+    void leave_out_away(const Particles& particles);
     void relax(Particles& particles, SimulationProfile& profile, const Workers& workers);
     /// The proof at the end of a frame: rescues the particles that are not proven free, and counts those that
     /// are lost nevertheless.
@@ -41,6 +43,7 @@ class Collisions {
     std::size_t mark_lost(std::uint32_t particle, const Particles& particles);
 
     std::vector<std::unique_ptr<Collision>> collisions_; ///< one for each collider
+    std::vector<std::uint8_t> is_away_;                  ///< by collider, in this frame
     std::vector<std::uint32_t> unproven_;                ///< in keep_free(), with room for all
     bool rescues_;
 };

@@ -19,12 +19,16 @@ constexpr std::size_t kPieceSize = 256;
 /// Particles that are worth a piece of work, where several threads share them.
 constexpr std::size_t kSharedSize = 2048;
 
+/// Share of the coordinates: more than floats lose when boxes change frames.
+constexpr double kRoundingOfBoxes = 1e-5;
+
 } // namespace
 
 ExactCollision::ExactCollision(const Collider& collider, const Particles& particles,
                                std::span<const std::uint8_t> passes, const SimulationOptions& options)
-    : options_(options), now_(collider, collider.pose, options), frame_start_pose_(collider.pose),
-      known_(particles, passes), free_places_(now_, particles, passes), unproven_(2 * particles.count()) {
+    : options_(options), now_(collider, collider.pose, options), pose_(collider.pose),
+      frame_start_pose_(collider.pose), known_pose_(collider.pose), known_(particles, passes),
+      free_places_(now_, particles, passes), unproven_(2 * particles.count()) {
     const bool is_shared = worker_count(options.thread_count) > 1;
     const std::size_t most = is_shared ? kSharedSize : std::max<std::size_t>(particles.count(), 1);
     pieces_.assign(Workers::piece_count(particles.count(), most), Piece{ParticleList(most)});
@@ -41,16 +45,42 @@ void ExactCollision::begin_frame(const Collider& collider, const RigidTransform&
     free_places_.begin_frame(collider, previous_pose);
     moves_ = collider.pose != previous_pose;
     now_ = ColliderNow(collider, previous_pose, options_);
-    if (moves_) known_.follow(now_);
+    pose_ = collider.pose;
+}
+
+bool ExactCollision::is_away(const AlignedBox<double>& starts, const AlignedBox<double>& ends) const {
+    AlignedBox<double> places; // of all ways, in the map's frame
+    const auto add = [&](const AlignedBox<double>& box, const FrameChange& frame) {
+        for (int corner = 0; corner < 8; ++corner)
+            places.add(Vec3d(frame.point_to_local(Vec3d{(corner & 1) != 0 ? box.high.x : box.low.x,
+                                                        (corner & 2) != 0 ? box.high.y : box.low.y,
+                                                        (corner & 4) != 0 ? box.high.z : box.low.z})));
+    };
+    add(starts, FrameChange(frame_start_pose_, now_.scale));
+    add(ends, now_.local);
+    const double rounding = kRoundingOfBoxes * places.largest_coordinate();
+    const double reach = 2 * double{now_.thickness} / now_.local.least_scale() + rounding;
+    return places.distance(Vec3d(now_.map.centre)) > (1 + kRoundingOfBoxes) * double{now_.map.radius} + reach;
+}
+
+/// What is known moves along with a collider that has moved, unless nobody asks.
+void ExactCollision::follow() {
+    if (pose_ == known_pose_) return;
+    known_.follow(now_);
+    known_pose_ = pose_;
 }
 
 void ExactCollision::archive(StateArchive& state, const Collider& collider) {
-    if (state.reads()) now_ = ColliderNow(collider, collider.pose, options_);
+    if (state.reads()) {
+        now_ = ColliderNow(collider, collider.pose, options_);
+        pose_ = known_pose_ = collider.pose;
+    }
     known_.archive(state);
     free_places_.archive(state);
 }
 
 void ExactCollision::relax(Particles& particles, SimulationProfile& profile, const Workers& workers) {
+    follow();
     const std::size_t size = pieces_.size() > 1 ? kSharedSize : std::max<std::size_t>(particles.count(), 1);
     workers.for_ranges(particles.count(), size,
                        [&](std::size_t, std::size_t piece, std::size_t first, std::size_t end) {
@@ -163,6 +193,7 @@ Vec3d ExactCollision::without_approach(std::size_t i, const Particles& particles
 }
 
 std::span<const std::uint32_t> ExactCollision::find_unproven(const Particles& particles) {
+    follow();
     if (moves_) {
         const FrameChange before(frame_start_pose_, {1, 1, 1});
         for (std::size_t i = 0; i < particles.count(); ++i)

@@ -30,6 +30,8 @@ class ExactCollision final : public Collision {
     void restart(std::span<const std::uint32_t> restarted, const Particles& particles) override;
     void set_friction(double friction) override { options_.friction = friction; }
     void begin_frame(const Collider& collider, const RigidTransform& previous_pose) override;
+    /// As the collider sees it, each particle goes straight from one box to the other.
+    bool is_away(const AlignedBox<double>& starts, const AlignedBox<double>& ends) const override;
     /// To the thickness over the nearest point, with friction.
     void relax(Particles& particles, SimulationProfile& profile, const Workers& workers) override;
 
@@ -53,6 +55,7 @@ class ExactCollision final : public Collision {
         std::uint64_t contact_count = 0, map_query_count = 0;
     };
 
+    void follow();
     void relax(std::size_t first, std::size_t end, Particles& particles, Piece& piece);
     void ask(Particles& particles, Piece& piece);
     bool meet_on_the_way(std::size_t i, const Particles& particles, Piece& piece);
@@ -66,7 +69,8 @@ class ExactCollision final : public Collision {
 
     SimulationOptions options_;
     ColliderNow now_;
-    RigidTransform frame_start_pose_;
+    RigidTransform pose_, frame_start_pose_;
+    RigidTransform known_pose_; ///< where the collider stood when known_ followed it last
     KnownContacts known_;
     FreePlaces free_places_;
     PointArrays moved_along_; ///< places at the frame's start, moved along; used while the collider moves

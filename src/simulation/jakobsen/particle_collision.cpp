@@ -189,6 +189,7 @@ std::span<const std::uint32_t> ParticleCollision::correct(const SolverStep& step
     const Workers::Session session(state_->workers);
     state_->begin_step(step);
     state_->move_colliders();
+    state_->collisions->leave_out_away(state_->particles);
     state_->collisions->relax(state_->particles, state_->profile, state_->workers);
     state_->collisions->keep_free(state_->particles, state_->profile);
     state_->write_back(step, seconds);
