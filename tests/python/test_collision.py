@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 import echinus as ech
+from guide import programs_of
 
 SECONDS = 1 / 60
 BALL = ech.make_sphere(1, 40, 20)
@@ -67,6 +68,15 @@ def test_faces_that_fall_on_a_ball_meet_neither_it_nor_each_other():
         assert len(ech.self_intersecting_pairs(ech.Mesh(positions, faces))) == 0
     assert corrected > 30
     assert collision.unresolved_count == 0
+
+
+def test_the_program_of_the_documents_leaves_nothing_inside():
+    names = {}
+    for program in programs_of("docs/own_solver.md"):
+        exec(program, names)
+    seen_from_the_torus = names["positions"] - np.float32([0, 0, 0.2 * 119 / 60])
+    assert not names["torus"].contains(seen_from_the_torus).any()
+    assert len(names["corrected"]) > 0
 
 
 def test_arrays_that_cannot_be_corrected_in_place_are_refused():
