@@ -507,6 +507,22 @@ TEST(BulletAdapter, NothingIsLostAMillionAwayWhereBulletHasDoubles) {
     EXPECT_GT(away.invXform({1e6, -1e6, highest(cloth)}).z(), btScalar(0.3));
 }
 
+TEST(BulletAdapter, TakesAnyFrictionAndLeavesOutWhatHasExploded) {
+    using Limits = std::numeric_limits<btScalar>;
+    const TriangleMesh mesh = make_box({3, 3, 1});
+    bullet::MapShape shape(ExactMap::build(mesh));
+    for (const btScalar friction : {Limits::infinity(), Limits::quiet_NaN(), btScalar(1e18), btScalar(-1)}) {
+        World world;
+        btRigidBody& box = world.add_kinematic(shape, at(0, 0, 0));
+        box.setFriction(friction);
+        const btSoftBody& cloth = world.add_cloth(1, btScalar(0.55));
+        world.step(2);
+        EXPECT_EQ(inside_count(cloth, mesh), 0);
+        box.setWorldTransform(at(0, 0, Limits::quiet_NaN()));
+        EXPECT_NO_THROW(world.step(2));
+    }
+}
+
 TEST(BulletAdapter, NamesAMeshFarAwayAnOpenSurfaceAndAScaleOfZero) {
     TriangleMesh far = torus();
     far.origin = {448262, 5411932, 112};

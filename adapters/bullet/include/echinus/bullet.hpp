@@ -53,6 +53,11 @@ inline RigidTransform to_echinus(const btTransform& pose) {
     return {rotation.normalised(), to_echinus(pose.getOrigin())};
 }
 
+inline bool is_finite(const btTransform& pose) {
+    const auto [rotation, translation] = to_echinus(pose);
+    return is_finite(translation) && std::isfinite(rotation.w + rotation.x + rotation.y + rotation.z);
+}
+
 /// Bullet itself stops bodies whose boxes reach about so far.
 constexpr btScalar kLargestMargin = 1e5;
 
@@ -351,6 +356,8 @@ struct PlacedShape {
     btTransform pose, previous_pose; ///< at the end of this step and of the last one
 
     auto key() const { return std::tuple(object_id, number); }
+    /// Bullet goes on with bodies that have exploded.
+    bool is_somewhere() const { return is_finite(pose) && is_finite(previous_pose); }
 
     /// Whether nodes may be inside now or have met the surface during the step: as the moving shape sees it,
     /// each goes straight from one box to the other.
@@ -457,6 +464,8 @@ class NodeKeeper {
     }
 
   private:
+    static constexpr double kMost = 1e9; ///< that ParticleCollision takes
+
     /// Whether the same shapes are near as in the last step, and begin where they were.
     bool goes_on(std::span<const PlacedShape* const> near) const {
         return collision_ &&
@@ -492,10 +501,13 @@ class NodeKeeper {
             const btVector3 place = shape->pose.getOrigin().absolute();
             farthest = std::max(farthest, double{place[place.maxAxis()]});
         }
-        return std::max(gap, double{4 * std::numeric_limits<btScalar>::epsilon()} * farthest);
+        return std::min(kMost,
+                        std::max(gap, 4 * double{std::numeric_limits<btScalar>::epsilon()} * farthest));
     }
+    /// Bullet takes any numbers.
     static double friction(const btSoftBody& body, const PlacedShape& shape) {
-        return std::max(double{body.m_cfg.kDF * shape.object->getFriction()}, 0.0);
+        const double friction{body.m_cfg.kDF * shape.object->getFriction()};
+        return friction > 0 ? std::min(friction, kMost) : 0;
     }
 
     RigidTransform around_origin(const btTransform& pose) const {
@@ -610,7 +622,8 @@ class Solver : public btDefaultSoftBodySolver {
         near_.clear();
         const NodeBoxes nodes(body);
         for (const PlacedShape& shape : shapes_.all())
-            if (shape.is_near(nodes) && may_meet(body, *shape.object)) near_.push_back(&shape);
+            if (shape.is_somewhere() && shape.is_near(nodes) && may_meet(body, *shape.object))
+                near_.push_back(&shape);
     }
 
     bool may_meet(btSoftBody& body, btCollisionObject& object) {
