@@ -2,6 +2,7 @@
 
 #include "support/cloth_meshes.hpp"
 #include "support/draping.hpp"
+#include "support/expectations.hpp"
 #include "support/random_points.hpp"
 #include "support/surface_judge.hpp"
 
@@ -371,6 +372,14 @@ TEST(SelfCollision, KeepsTheMomentumOfASheetThatUnfoldsInTheAir) {
         EXPECT_LT(length(mean_of(simulation.positions()) - before) * 10, 0.1); // metres per second
         EXPECT_TRUE(meeting_faces(simulation, {}).empty());
     }
+}
+
+TEST(SelfCollision, NamesTheDistanceFromTheOriginWhereFloatsMakeTheFacesOfTheStartMeet) {
+    Deformable sheet = folded_in_four(17, 0);
+    for (std::vector<Vec3f>* places : {&sheet.positions, &sheet.previous_positions})
+        for (Vec3f& v : *places) v.x += 2e6F;
+    expect_words(refusal_of(ErrorCode::InvalidOptions, [&] { Simulation(sheet, {}, kSelf); }),
+                 "from the origin, where floats tell its layers apart only from");
 }
 
 TEST(SelfCollision, LeavesANetAloneThatABallOnlyPasses) {

@@ -6,8 +6,6 @@
 #include "simulation/surfaces/edge_lengths.hpp"
 #include "simulation/surfaces/model_mesh.hpp"
 
-#include <echinus/error.hpp>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -29,17 +27,6 @@ float least_height_of(const Element& element, std::span<const Vec3f> positions) 
 float least_height_of(const ElasticTetrahedron& tetrahedron) {
     const auto& [b, c, d] = tetrahedron.gradients;
     return 1 / std::max({length(b), length(c), length(d), length(b + c + d)});
-}
-
-/// Layers that could come no nearer to each other than this would hold the deformable where it is.
-void require_resolved(float extent, float edge_length) {
-    const float least_gap = extent * threshold::kLeastGap;
-    if (!(least_gap > edge_length * threshold::kMostSelfThickness)) return;
-    throw Error(ErrorCode::InvalidOptions,
-                "the deformable begins " + std::to_string(extent) +
-                    " from the origin, where floats tell its layers apart only from " +
-                    std::to_string(least_gap) + " on, and its mean edge is " + std::to_string(edge_length) +
-                    "; move the scene nearer to the origin, or switch self_collision off");
 }
 
 /// [collider] 1 for those whose faces do not collide: only particles keep out of them.
@@ -110,7 +97,6 @@ SurfaceContacts::SurfaceContacts(const Deformable& deformable, const std::vector
         for (const std::uint32_t v : tetrahedron.particles)
             most_[v] = std::min(most_[v], threshold::kMostOfHeight * least_height_of(tetrahedron));
     if (options.self_collision) {
-        require_resolved(largest_coordinate(places, own_->vertex_count()), edge_length);
         ContactSide& side = sides_.emplace_back(own_, places);
         side.number = static_cast<std::uint32_t>(collider_count_);
         side.thickness = static_cast<float>(options.self_thickness.value_or(*options.thickness));

@@ -1,7 +1,9 @@
 #include "simulation/start/start_state.hpp"
 
+#include "simulation/contact/thresholds.hpp"
 #include "simulation/start/model_pairs.hpp"
 #include "simulation/start/validation.hpp"
+#include "simulation/surfaces/edge_lengths.hpp"
 #include "simulation/surfaces/elements.hpp"
 #include "simulation/surfaces/model_mesh.hpp"
 
@@ -10,6 +12,7 @@
 #include <echinus/intersections.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -98,11 +101,28 @@ void require_apart(const Deformable& deformable, const TriangleMesh& surface, co
         require_outside(deformable, passes, with_map(collider, *map_of_surface(collider)), options, name);
 }
 
+/// Layers that could come no nearer to each other than this would hold the deformable where it is.
+void require_resolved(const Deformable& deformable, const Elements& elements) {
+    float extent = 0;
+    for (const Vec3f& v : deformable.positions)
+        extent = std::max({extent, std::abs(v.x), std::abs(v.y), std::abs(v.z)});
+    const float edge_length = mean_edge_length(elements, deformable.positions);
+    const float least_gap = extent * threshold::kLeastGap;
+    if (!(least_gap > edge_length * threshold::kMostSelfThickness)) return;
+    throw Error(ErrorCode::InvalidOptions,
+                "the deformable begins " + std::to_string(extent) +
+                    " from the origin, where floats tell its layers apart only from " +
+                    std::to_string(least_gap) + " on, and its mean edge is " + std::to_string(edge_length) +
+                    "; move the scene nearer to the origin, or switch self_collision off");
+}
+
 } // namespace
 
 void require_apart(const Deformable& deformable, const std::vector<Collider>& colliders,
                    const SimulationOptions& options) {
     const Elements elements = elements_of(deformable);
+    // First, since floats that coarse make faces meet, too.
+    if (options.self_collision) require_resolved(deformable, elements);
     const TriangleMesh surface = surface_of(deformable, elements);
     for (std::size_t i = 0; i < colliders.size(); ++i)
         if (map_of_surface(colliders[i]) != nullptr)

@@ -12,7 +12,8 @@ namespace echinus {
 
 /// Contact of surfaces keeps apart what is apart, so it has to begin so: no face or thread of the deformable
 /// may intersect a model, no particle may lie inside one, and with self_collision no two faces may intersect
-/// beyond what they share. Decided exactly, in the frame of each model.
+/// beyond what they share. Decided exactly, in the frame of each model. With self_collision floats have to
+/// tell its layers apart where it begins.
 /// @pre deformable, colliders and options are valid, with surface_collision
 /// @throws Error InvalidOptions, naming the first pairs, or the first particle inside
 void require_apart(const Deformable& deformable, const std::vector<Collider>& colliders,

@@ -250,6 +250,7 @@ void require_valid_handles(const Deformable& deformable) {
         const Handle& handle = deformable.handles[h];
         const std::string name = "handle " + std::to_string(h);
         require_valid(handle.keys, name);
+        if (handle.particles.empty()) fail(name + " leads no particles");
         if (std::isnan(handle.release_time)) fail(name + " has a release time that is not a number");
         for (const std::uint32_t particle : handle.particles) {
             const std::string of_particle = name + " of particle " + std::to_string(particle);
