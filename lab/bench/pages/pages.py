@@ -246,7 +246,7 @@ def calls(folder):
 
 
 def readme_table(results, mesh):
-    """The README's: a question a row, a number a cell, near the surface unless the row says otherwise; the
+    """In short: a question a row, a number a cell, near the surface unless the row says otherwise; the
     numbers of a row in one notation."""
     colliders = {"exact map": "exact map", "distance map": "distance map", "dense grid 0.63 MB 16 bit": "dense grid 16 bit",
                  "Embree": "Embree's tree"}
@@ -382,7 +382,7 @@ TASKS = {
     "engines": (["engines.md"], engines),
     "calls": (["calls.md"], calls),
     "labels": (["labels_measured.md"], labels),
-    "figures": (["figures.md", "../README.md"], figures),
+    "figures": (["figures.md"], figures),
     "reproduction": (["reproduction.md"], reproduction),
 }
 
