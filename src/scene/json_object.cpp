@@ -46,22 +46,6 @@ std::string reason_of(const json::exception& error) {
     return end_of_tag == std::string::npos ? message : message.substr(end_of_tag + 2);
 }
 
-/// Levenshtein's distance: insertions, deletions and replacements that make one word the other.
-std::size_t edit_distance(std::string_view a, std::string_view b) {
-    std::vector<std::size_t> row(b.size() + 1);
-    std::iota(row.begin(), row.end(), std::size_t{0});
-    for (std::size_t i = 0; i < a.size(); ++i) {
-        std::size_t diagonal = row[0];
-        row[0] = i + 1;
-        for (std::size_t j = 0; j < b.size(); ++j) {
-            const std::size_t replaced = diagonal + (a[i] == b[j] ? 0 : 1);
-            diagonal = row[j + 1];
-            row[j + 1] = std::min({replaced, row[j] + 1, row[j + 1] + 1});
-        }
-    }
-    return row.back();
-}
-
 std::string expected_number(Range range) {
     if (range.most == std::numeric_limits<double>::infinity())
         return "a number of at least " + number_text(range.least);

@@ -26,7 +26,25 @@ TEST_F(MainCommand, RefusesAMissingOrUnknownCommandAsWrongUse) {
                    {"frobnicate", "x.obj"});
     expect_failure(2, "'frobnicate' is no command; there are mesh, map, moment, sheet",
                    {"render", "frobnicate"});
-    expect_failure(2, "--frobnicate", {"--frobnicate"});
+    expect_failure(2, "--frobnicate is no option here;", {"--frobnicate"});
+}
+
+TEST_F(MainCommand, NamesWhatIsNearestToAMistypedWord) {
+    expect_failure(2, "'simulat' is no command; the nearest is simulate; there are mesh",
+                   {"simulat", "x.json"});
+    expect_failure(2, "'shet' is no command; the nearest is sheet", {"render", "shet"});
+    expect_failure(2, "--verson is no option here; the nearest is --version", {"--verson"});
+    // Also where something else is missing.
+    expect_failure(2, "--direction is no option here; the nearest is --directions",
+                   {"build", "x.obj", "--direction", "200"});
+    expect_failure(2, "--outpt is no option here; the nearest is --output", {"build", "x.obj", "--outpt=y"});
+}
+
+TEST_F(MainCommand, NamesTheOptionWhoseValueItCannotTake) {
+    expect_failure(2, "--directions: '=' is not what it takes; write it as --directions VALUE or",
+                   {"build", "x.obj", "--directions", "=", "200", "-o", "y"});
+    expect_failure(2, "--directions: 'many' is not what it takes",
+                   {"build", "x.obj", "--directions", "many", "-o", "y"});
 }
 
 TEST_F(MainCommand, TellsWhereTheComparisonWentWhateverItsArguments) {

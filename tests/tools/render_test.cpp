@@ -87,6 +87,12 @@ TEST_F(RenderCommand, DrawsTheSamePictureAgainAndToStandardOutput) {
         content("box.png"));
 }
 
+TEST_F(RenderCommand, RefusesToWriteAPngUnderTheEndingOfAnotherFormat) {
+    expect_failure(2, "ends in .jpg, and what is written is png; name it x.png",
+                   {"render", "mesh", "torus.obj", "-o", "x.jpg"});
+    EXPECT_FALSE(std::filesystem::exists("x.jpg"));
+}
+
 TEST_F(RenderCommand, SeesADifferenceBetweenUpAxesAndBetweenViews) {
     expect_success(render({"mesh", "box.obj", "-o", "z.png"}));
     expect_success(render({"mesh", "box.obj", "-o", "x.png", "--up", "x"}));

@@ -40,7 +40,10 @@ void PictureArguments::add_options(Command command, std::uint32_t width, std::ui
                                std::uint32_t least, std::uint32_t most) {
         command.add(name, &variable, description).range(least, most).type_name("COUNT").show_default();
     };
-    command.add("-o,--output", &target, "The picture, a PNG file, or -").required().type_name("PNG");
+    command.add("-o,--output", &target, "The picture, a PNG file, or -")
+        .required()
+        .ends_in(".png")
+        .type_name("PNG");
     add_count("--width", options.width, "Pixels", kLeastSide, RenderOptions::kMaxSide);
     add_count("--height", options.height, "Pixels", kLeastSide, RenderOptions::kMaxSide);
     add_count("--samples", options.samples, "Rays per pixel: more take longer and leave less grain", 1,

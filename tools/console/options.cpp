@@ -1,8 +1,12 @@
 #include "console/options.hpp"
 
+#include "files/text.hpp"
+
 #include <CLI/CLI.hpp>
 
+#include <algorithm>
 #include <charconv>
+#include <filesystem>
 #include <sstream>
 #include <string_view>
 
@@ -64,21 +68,68 @@ ArgumentTarget parser_of(char separator, std::initializer_list<T*> numbers) {
     };
 }
 
-/// Of a command that does not exist, says which do; nothing when all commands that were given exist. CLI11
-/// only says that words were left over.
-std::optional<std::string> sentence_about_command(const CLI::App& app) {
-    const std::vector<CLI::App*> given = app.get_subcommands();
-    if (!given.empty()) return sentence_about_command(*given.front());
-    const std::vector<std::string> words = app.remaining();
-    const auto is_command = [](const CLI::App* sub) {
-        return !sub->get_name().empty();
-    }; // not a group of options
-    const std::vector<const CLI::App*> commands = app.get_subcommands(is_command);
-    const bool has_name = !words.empty() && !words.front().starts_with('-');
-    if (commands.empty() || !has_name) return {};
-    std::string names;
-    for (const CLI::App* command : commands) names += (names.empty() ? "" : ", ") + command->get_name();
-    return "'" + words.front() + "' is no command; there are " + names;
+/// The one that a mistyped word may stand for; nothing where none is like it.
+std::optional<std::string> nearest_of(const std::vector<std::string>& words, const std::string& mistyped) {
+    const auto distance = [&](const std::string& word) { return echinus::edit_distance(mistyped, word); };
+    const auto nearest = std::min_element(
+        words.begin(), words.end(), [&](const auto& a, const auto& b) { return distance(a) < distance(b); });
+    if (nearest == words.end() || distance(*nearest) > mistyped.size() / 3 + 1) return {};
+    return *nearest;
+}
+
+std::vector<std::string> command_names(const CLI::App& app) {
+    std::vector<std::string> names;
+    for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; }))
+        if (!command->get_name().empty()) names.push_back(command->get_name()); // not a group of options
+    return names;
+}
+
+/// With those of its groups.
+std::vector<std::string> option_names(const CLI::App& app) {
+    std::vector<std::string> names;
+    for (const CLI::Option* option : app.get_options())
+        for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
+    for (const CLI::App* group : app.get_subcommands([](const CLI::App*) { return true; }))
+        if (group->get_name().empty())
+            for (std::string& name : option_names(*group)) names.push_back(std::move(name));
+    return names;
+}
+
+/// The command that was given last.
+const CLI::App& innermost(const CLI::App& app) {
+    for (const CLI::App* given : app.get_subcommands())
+        if (!given->get_name().empty()) return innermost(*given);
+    return app;
+}
+
+/// Of a command or an option that does not exist, says what is near it, and which commands do; nothing where
+/// all exist that were given. CLI11 only says that words were left over.
+std::optional<std::string> sentence_about_unknown(const CLI::App& app) {
+    const CLI::App& command = innermost(app);
+    for (const std::string& word : app.remaining(true)) {
+        const bool is_option = word.size() > 1 && word.starts_with('-');
+        const std::vector<std::string> commands = command_names(command);
+        if (!is_option && commands.empty()) continue;
+        const std::string name = word.substr(0, word.find('='));
+        const auto nearest = nearest_of(is_option ? option_names(command) : commands, name);
+        std::string sentence = is_option ? name + " is no option here" : "'" + word + "' is no command";
+        if (nearest) sentence += "; the nearest is " + *nearest;
+        if (is_option) return sentence;
+        for (const std::string& known : commands)
+            sentence += (&known == &commands.front() ? "; there are " : ", ") + known;
+        return sentence;
+    }
+    return {};
+}
+
+/// @param found  CLI11's "Could not convert: OPTION = VALUE"
+std::string sentence_about_value(const std::string& found) {
+    const std::size_t colon = found.find(": "), equals = found.find(" = ");
+    if (colon == std::string::npos || equals == std::string::npos) return found;
+    const std::string option = found.substr(colon + 2, equals - colon - 2), value = found.substr(equals + 3);
+    const std::string remedy =
+        value == "=" ? "; write it as " + option + " VALUE or " + option + "=VALUE" : ", see its help";
+    return option + ": '" + value + "' is not what it takes" + remedy;
 }
 
 } // namespace
@@ -95,6 +146,19 @@ Option Option::range(std::uint64_t least, std::uint64_t most) const {
 
 Option Option::not_empty() const {
     option_->check([](const std::string& text) { return text.empty() ? "must name a file" : ""; });
+    return *this;
+}
+
+Option Option::ends_in(const std::string& ending) const {
+    option_->check([ending](const std::string& text) {
+        const std::filesystem::path file(text);
+        std::string own = file.extension().string();
+        std::transform(own.begin(), own.end(), own.begin(),
+                       [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
+        if (own.empty() || own == ending) return std::string();
+        return "ends in " + file.extension().string() + ", and what is written is " + ending.substr(1) +
+               "; name it " + std::filesystem::path(file).replace_extension(ending).string();
+    });
     return *this;
 }
 
@@ -199,9 +263,10 @@ std::optional<std::string> Program::run(int argument_count, const char* const* a
         std::ostringstream text;
         app_->exit(help_or_version, text, text);
         return text.str().ends_with('\n') ? text.str() : text.str() + "\n"; // forgotten in nested commands
-    } catch (const CLI::ExtrasError& error) {
-        throw WrongUse(sentence_about_command(*app_).value_or(error.what()));
+    } catch (const CLI::ConversionError& error) {
+        throw WrongUse(sentence_about_value(error.what()));
     } catch (const CLI::ParseError& error) {
-        throw WrongUse(error.what());
+        // A mistyped option may be the one that is missing.
+        throw WrongUse(sentence_about_unknown(*app_).value_or(error.what()));
     }
 }

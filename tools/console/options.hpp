@@ -46,6 +46,9 @@ class Option {
     /// Whole numbers from `least` to `most` only.
     Option range(std::uint64_t least, std::uint64_t most) const;
     Option not_empty() const;
+    /// A file's name that ends so, in whatever case, if it has an ending at all; - too. @param ending  as
+    /// ".png"
+    Option ends_in(const std::string& ending) const;
     Option excludes(const std::string& other_option) const;
     /// The argument's name in the help.
     Option type_name(const std::string& name) const;
