@@ -16,7 +16,7 @@ using namespace echinus;
 
 namespace {
 
-constexpr double kThickness = 0.01, kSeconds = 1.0 / 60;
+constexpr double kOwnThickness = 0.01, kOwnSeconds = 1.0 / 60;
 
 /// A solver that knows no collision, and holds a sheet together by a pull of each particle to its neighbours.
 struct OwnSheet {
@@ -34,7 +34,7 @@ struct OwnSheet {
         std::vector<Vec3f>& places = mesh.vertices;
         const std::vector<Vec3f> before = places;
         for (std::size_t i = 0; i < places.size(); ++i)
-            places[i] += (velocities[i] + acceleration * float(kSeconds)) * float(kSeconds);
+            places[i] += (velocities[i] + acceleration * float(kOwnSeconds)) * float(kOwnSeconds);
         for (int n = 0; n < 10; ++n)
             for (const Stick& stick : sticks_) {
                 const Vec3f across = places[stick.b] - places[stick.a];
@@ -43,10 +43,10 @@ struct OwnSheet {
                 places[stick.b] -= half;
             }
         for (std::size_t i = 0; i < places.size(); ++i)
-            velocities[i] = (places[i] - before[i]) * float(1 / kSeconds);
+            velocities[i] = (places[i] - before[i]) * float(1 / kOwnSeconds);
     }
     std::vector<std::uint32_t> correct(SurfaceCollision& collision) {
-        const auto corrected = collision.correct(mesh.vertices, velocities, kSeconds);
+        const auto corrected = collision.correct(mesh.vertices, velocities, kOwnSeconds);
         return {corrected.begin(), corrected.end()};
     }
 
@@ -56,7 +56,7 @@ struct OwnSheet {
 
 SurfaceCollision collision_of(const OwnSheet& sheet, std::vector<Collider> colliders,
                               const SurfaceCollisionOptions& options = {}) {
-    return {sheet.mesh.vertices, sheet.mesh.faces, std::move(colliders), kThickness, options};
+    return {sheet.mesh.vertices, sheet.mesh.faces, std::move(colliders), kOwnThickness, options};
 }
 
 } // namespace
@@ -87,7 +87,7 @@ TEST(SurfaceCollisionOfAnySolver, StopsAtAPlateWhatNothingStretches) {
     EXPECT_EQ(sheet.correct(collision).size(), 16u);
     for (std::size_t i = 0; i < 16; ++i) {
         EXPECT_GT(sheet.mesh.vertices[i].z, 0.0005); // contact pushes the harder the nearer
-        EXPECT_LT(sheet.mesh.vertices[i].z, 0.0005 + 1.1 * kThickness);
+        EXPECT_LT(sheet.mesh.vertices[i].z, 0.0005 + 1.1 * kOwnThickness);
         EXPECT_NEAR(sheet.velocities[i].x, 1, 0.05);
         EXPECT_GT(sheet.velocities[i].z, -0.05);
     }
@@ -143,13 +143,13 @@ TEST(SurfaceCollisionOfAnySolver, RefusesWhatItCannotWorkWithOrPartsItIfItMay) {
     const auto refuse = [](const std::string& words, const auto& call) {
         test::expect_error(ErrorCode::InvalidOptions, words, call);
     };
-    refuse("untangle", [&] { SurfaceCollision(cut, face, {{.map = plate}}, kThickness); });
-    SurfaceCollision collision(cut, face, {{.map = plate}}, kThickness, {.untangle = true});
+    refuse("untangle", [&] { SurfaceCollision(cut, face, {{.map = plate}}, kOwnThickness); });
+    SurfaceCollision collision(cut, face, {{.map = plate}}, kOwnThickness, {.untangle = true});
     EXPECT_GT(collision.positions()[0].z, 0.05F);
-    refuse("faces", [&] { SurfaceCollision(cut, {}, {{.map = plate}}, kThickness); });
+    refuse("faces", [&] { SurfaceCollision(cut, {}, {{.map = plate}}, kOwnThickness); });
     refuse("thickness", [&] { SurfaceCollision(cut, face, {{.map = plate}}, -1); });
     refuse("friction", [&] { SurfaceCollision(cut, face, {{.map = plate}}, 0.01, {.friction = -1}); });
     std::vector<Vec3f> positions = collision.positions(), velocities(2);
     refuse("0.000000 seconds", [&] { collision.correct(positions, {}, 0); });
-    refuse("2 velocities; it needs 3", [&] { collision.correct(positions, velocities, kSeconds); });
+    refuse("2 velocities; it needs 3", [&] { collision.correct(positions, velocities, kOwnSeconds); });
 }

@@ -20,8 +20,8 @@ using namespace echinus;
 
 namespace {
 
-constexpr double kThickness = 0.01;
-constexpr double kSeconds = 1.0 / 60;
+constexpr double kParticleThickness = 0.01;
+constexpr double kParticleSeconds = 1.0 / 60;
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 
 /// A solver that knows no collision: particles with velocities, and a force on all.
@@ -34,12 +34,13 @@ struct Cloud {
     void move(const Vec3f& acceleration = {}) {
         previous = positions;
         for (std::size_t i = 0; i < positions.size(); ++i) {
-            velocities[i] += acceleration * float(kSeconds);
-            positions[i] += velocities[i] * float(kSeconds);
+            velocities[i] += acceleration * float(kParticleSeconds);
+            positions[i] += velocities[i] * float(kParticleSeconds);
         }
     }
     std::vector<std::uint32_t> correct(ParticleCollision& collision) {
-        const auto corrected = collision.correct({previous, positions, velocities, inverse_masses}, kSeconds);
+        const auto corrected =
+            collision.correct({previous, positions, velocities, inverse_masses}, kParticleSeconds);
         return {corrected.begin(), corrected.end()};
     }
     void step(ParticleCollision& collision, const Vec3f& acceleration = {}) {
@@ -77,7 +78,8 @@ RigidTransform random_pose(test::Random& random, float reach) {
 TEST(ParticleCollision, LeavesParticlesAloneThatMeetNothing) {
     test::Random random(1);
     ParticleCollision collision(
-        {{.map = ExactMap::build(make_torus(1, 0.4, 24, 12)), .pose = {Rotation{}, {10, 0, 0}}}}, kThickness);
+        {{.map = ExactMap::build(make_torus(1, 0.4, 24, 12)), .pose = {Rotation{}, {10, 0, 0}}}},
+        kParticleThickness);
     Cloud cloud = cloud_in_cube(random, 200, 1.5F);
     for (int n = 0; n < 20; ++n) {
         for (Vec3f& velocity : cloud.velocities) velocity = test::in_cube(random, 3);
@@ -91,7 +93,7 @@ TEST(ParticleCollision, LeavesParticlesAloneThatMeetNothing) {
 
 TEST(ParticleCollision, SaysWhichParticlesItHasCorrectedAndLeavesTheOthersToTheBit) {
     test::Random random(2);
-    ParticleCollision collision({{.map = ExactMap::build(make_torus(1, 0.4, 24, 12))}}, kThickness);
+    ParticleCollision collision({{.map = ExactMap::build(make_torus(1, 0.4, 24, 12))}}, kParticleThickness);
     Cloud cloud = cloud_in_cube(random, 1000, 1.5F);
     std::size_t corrected_count = 0;
     for (int n = 0; n < 20; ++n) {
@@ -120,7 +122,7 @@ TEST(ParticleCollision, LosesNoParticleHoweverFastBetweenModelsThatMoveAndTurn) 
         const std::vector<Collider> colliders{
             {.map = torus, .scale = n % 2 == 0 ? Vec3d{1, 1, 1} : Vec3d{0.5, -1.5, 1}},
             {.map = plate, .pose = {Rotation{}, {6, 0, 0}}}};
-        ParticleCollision collision(colliders, n % 4 == 0 ? 0 : kThickness);
+        ParticleCollision collision(colliders, n % 4 == 0 ? 0 : kParticleThickness);
         Cloud cloud = cloud_in_cube(random, 300, 1.5F);
         for (std::size_t i = 0; i < 150; ++i) cloud.positions[i] += Vec3f{6, 0, 0};
         for (int step = 0; step < 30; ++step) {
@@ -147,7 +149,7 @@ TEST(ParticleCollision, MissesNoColliderThatComesFromAfarOrIntoWhichAnotherOnePu
     const ExactMap plate = ExactMap::build(make_box({2, 2, 0.01}));
     ParticleCollision collision({{.map = plate, .pose = {Rotation{}, {0, 0, -500}}},
                                  {.map = plate, .pose = {Rotation{}, {0, 0, 40}}}},
-                                kThickness);
+                                kParticleThickness);
     Cloud cloud{{{0.3F, 0.2F, 0}}};
     for (int n = 1; n <= 3; ++n) {
         collision.set_collider_pose(0, {Rotation::about({0, 0, 1}, n), {0, 0, -500.0 + 100 * n}});
@@ -157,7 +159,7 @@ TEST(ParticleCollision, MissesNoColliderThatComesFromAfarOrIntoWhichAnotherOnePu
     }
     collision.set_collider_pose(0, {Rotation{}, {0, 0, 30}});
     cloud.step(collision);
-    EXPECT_NEAR(cloud.positions[0].z, 30.005 + kThickness, 1e-3);
+    EXPECT_NEAR(cloud.positions[0].z, 30.005 + kParticleThickness, 1e-3);
     cloud.velocities[0] = {};
     collision.set_collider_pose(0, {Rotation{}, {0, 0, 39.985}});
     cloud.step(collision);
@@ -165,13 +167,13 @@ TEST(ParticleCollision, MissesNoColliderThatComesFromAfarOrIntoWhichAnotherOnePu
 }
 
 TEST(ParticleCollision, StopsAFastParticleOnAThinPlateWithTheVelocityThatIsLeft) {
-    ParticleCollision collision({{.map = ExactMap::build(make_box({2, 2, 0.001}))}}, kThickness,
+    ParticleCollision collision({{.map = ExactMap::build(make_box({2, 2, 0.001}))}}, kParticleThickness,
                                 {.friction = 0});
     Cloud cloud{{{0.1F, 0.2F, 1}, {5, 5, 1}}};
     cloud.velocities = {{12, 0, -3000}, {0, 0, -3000}};
     cloud.move();
     EXPECT_EQ(cloud.correct(collision), std::vector<std::uint32_t>{0});
-    EXPECT_NEAR(cloud.positions[0].z, 0.0005 + kThickness, 1e-4);
+    EXPECT_NEAR(cloud.positions[0].z, 0.0005 + kParticleThickness, 1e-4);
     EXPECT_NEAR(cloud.velocities[0].x, 12, 1e-3);
     EXPECT_NEAR(cloud.velocities[0].z, 0, 1e-3);
     EXPECT_EQ(cloud.velocities[1].z, -3000);
@@ -179,7 +181,7 @@ TEST(ParticleCollision, StopsAFastParticleOnAThinPlateWithTheVelocityThatIsLeft)
 
 TEST(ParticleCollision, TakesOfAnImpactTheShareOfFrictionThatCoulombGivesItWhereverTheStepMeetsIt) {
     for (const float height : {0.52F, 0.6F, 0.7F}) {
-        ParticleCollision collision({{.map = ExactMap::build(make_box({8, 8, 1}))}}, kThickness,
+        ParticleCollision collision({{.map = ExactMap::build(make_box({8, 8, 1}))}}, kParticleThickness,
                                     {.friction = 0.25});
         Cloud cloud{{{0, 0, height}}};
         cloud.velocities = {{20, 0, -16}};
@@ -194,8 +196,9 @@ TEST(ParticleCollision, SlidesDownASlopeAsCoulombHasItAndStaysOnAFlatterOne) {
     const double angle = 0.5; // its tangent is 0.546
     const Rotation tilt = Rotation::about({1, 0, 0}, angle);
     for (const double friction : {0.0, 0.2, 0.4, 0.6}) {
-        ParticleCollision collision({{.map = box, .pose = {tilt, {}}}}, kThickness, {.friction = friction});
-        Cloud cloud{{Vec3f(tilt.apply({0, 0, 0.5 + kThickness}))}};
+        ParticleCollision collision({{.map = box, .pose = {tilt, {}}}}, kParticleThickness,
+                                    {.friction = friction});
+        Cloud cloud{{Vec3f(tilt.apply({0, 0, 0.5 + kParticleThickness}))}};
         const Vec3f begin = cloud.positions[0];
         for (int n = 0; n < 60; ++n) cloud.step(collision, {0, 0, -9.81F});
         const double pull = 9.81 * (std::sin(angle) - friction * std::cos(angle));
@@ -207,7 +210,8 @@ TEST(ParticleCollision, SlidesDownASlopeAsCoulombHasItAndStaysOnAFlatterOne) {
 
 TEST(ParticleCollision, HasTheFrictionOfEachCollider) {
     const ExactMap box = ExactMap::build(make_box({4, 4, 1}));
-    ParticleCollision collision({{.map = box}, {.map = box, .pose = {Rotation{}, {9, 0, 0}}}}, kThickness);
+    ParticleCollision collision({{.map = box}, {.map = box, .pose = {Rotation{}, {9, 0, 0}}}},
+                                kParticleThickness);
     const auto slow_down = [&] {
         Cloud cloud{{{0, 0, 0.52F}, {9, 0, 0.52F}}};
         cloud.velocities = {{20, 0, -16}, {20, 0, -16}};
@@ -223,18 +227,19 @@ TEST(ParticleCollision, HasTheFrictionOfEachCollider) {
 }
 
 TEST(ParticleCollision, GivesAVelocityThatIsNotThatOfThePositionsTheSameChange) {
-    ParticleCollision collision({{.map = ExactMap::build(make_box({4, 4, 1}))}}, kThickness, {.friction = 0});
-    Cloud cloud{{{0, 0, 0.5F + float(kThickness)}}};
+    ParticleCollision collision({{.map = ExactMap::build(make_box({4, 4, 1}))}}, kParticleThickness,
+                                {.friction = 0});
+    Cloud cloud{{{0, 0, 0.5F + float(kParticleThickness)}}};
     cloud.positions[0] = {0.01F, 0, 0.5F};
     cloud.velocities[0] = {7, 8, -0.2F};
     cloud.correct(collision);
     EXPECT_EQ(cloud.velocities[0].x, 7);
     EXPECT_EQ(cloud.velocities[0].y, 8);
-    EXPECT_NEAR(cloud.velocities[0].z, -0.2 + kThickness / kSeconds, 1e-3);
+    EXPECT_NEAR(cloud.velocities[0].z, -0.2 + kParticleThickness / kParticleSeconds, 1e-3);
 }
 
 TEST(ParticleCollision, PushesParticlesBeforeAModelThatComesAndTakesThemAlong) {
-    ParticleCollision collision({{.map = ExactMap::build(make_box({2, 2, 0.1}))}}, kThickness);
+    ParticleCollision collision({{.map = ExactMap::build(make_box({2, 2, 0.1}))}}, kParticleThickness);
     Cloud cloud{{{0, 0, 0.5F}}};
     for (int n = 1; n <= 10; ++n) {
         cloud.move();
@@ -242,13 +247,13 @@ TEST(ParticleCollision, PushesParticlesBeforeAModelThatComesAndTakesThemAlong) {
         cloud.correct(collision);
         EXPECT_GT(cloud.positions[0].z, 0.3 * n + 0.05);
     }
-    EXPECT_NEAR(cloud.velocities[0].z, 0.3 / kSeconds, 1e-2);
+    EXPECT_NEAR(cloud.velocities[0].z, 0.3 / kParticleSeconds, 1e-2);
 }
 
 TEST(ParticleCollision, CarriesWhatLiesOnATurntableAroundWithIt) {
-    ParticleCollision collision({{.map = ExactMap::build(make_box({4, 4, 0.2}))}}, kThickness,
+    ParticleCollision collision({{.map = ExactMap::build(make_box({4, 4, 0.2}))}}, kParticleThickness,
                                 {.friction = 2});
-    Cloud cloud{{{1, 0, 0.1F + float(kThickness)}}};
+    Cloud cloud{{{1, 0, 0.1F + float(kParticleThickness)}}};
     for (int n = 1; n <= 60; ++n) {
         cloud.move({0, 0, -9.81F});
         collision.set_collider_pose(0, {Rotation::about({0, 0, 1}, 0.01 * n), {}});
@@ -257,13 +262,13 @@ TEST(ParticleCollision, CarriesWhatLiesOnATurntableAroundWithIt) {
     const float taken_by = 0.005F; // until friction had it at the table's speed
     EXPECT_NEAR(cloud.positions[0].x, std::cos(0.6F - taken_by), 2e-3);
     EXPECT_NEAR(cloud.positions[0].y, std::sin(0.6F - taken_by), 2e-3);
-    EXPECT_NEAR(length(cloud.velocities[0]), 0.01 / kSeconds, 1e-2);
+    EXPECT_NEAR(length(cloud.velocities[0]), 0.01 / kParticleSeconds, 1e-2);
     for (int n = 0; n < 60; ++n) cloud.step(collision, {0, 0, -9.81F}); // the table rests now
     EXPECT_NEAR(length(cloud.velocities[0]), 0, 1e-3);
 }
 
 TEST(ParticleCollision, SweepsNothingWhereAColliderIsPlacedElsewhere) {
-    ParticleCollision collision({{.map = ExactMap::build(make_box({2, 2, 0.1}))}}, kThickness);
+    ParticleCollision collision({{.map = ExactMap::build(make_box({2, 2, 0.1}))}}, kParticleThickness);
     Cloud cloud{{{0, 0, 0.5F}}};
     cloud.step(collision);
     collision.place_collider(0, {Rotation{}, {0, 0, 1}});
@@ -273,16 +278,16 @@ TEST(ParticleCollision, SweepsNothingWhereAColliderIsPlacedElsewhere) {
 }
 
 TEST(ParticleCollision, LetsAParticleOutThatBeginsInside) {
-    ParticleCollision collision({{.map = ExactMap::build(make_box({1, 1, 1}))}}, kThickness);
+    ParticleCollision collision({{.map = ExactMap::build(make_box({1, 1, 1}))}}, kParticleThickness);
     Cloud cloud{{{0.1F, 0, 0.4F}}};
     cloud.step(collision);
-    EXPECT_NEAR(cloud.positions[0].z, 0.5 + kThickness, 1e-4);
+    EXPECT_NEAR(cloud.positions[0].z, 0.5 + kParticleThickness, 1e-4);
     EXPECT_NEAR(length(cloud.velocities[0]), 0, 1e-3); // pushed, not thrown
     EXPECT_EQ(collision.lost_count(), 0u);
 }
 
 TEST(ParticleCollision, TakesAParticleThatItsSolverPutsElsewhereAsBeginningThere) {
-    ParticleCollision collision({{.map = ExactMap::build(make_box({2, 2, 0.1}))}}, kThickness);
+    ParticleCollision collision({{.map = ExactMap::build(make_box({2, 2, 0.1}))}}, kParticleThickness);
     Cloud cloud{{{0, 0, 0.5F}, {0.5F, 0, 0.5F}}};
     cloud.step(collision);
     cloud.positions[0].z = -0.5F; // to the other side: no motion
@@ -292,22 +297,22 @@ TEST(ParticleCollision, TakesAParticleThatItsSolverPutsElsewhereAsBeginningThere
     EXPECT_EQ(cloud.positions[0].z, -0.5F);
     cloud.velocities[0].z = 60; // and from there it is stopped
     cloud.step(collision);
-    EXPECT_NEAR(cloud.positions[0].z, -0.05 - kThickness, 1e-4);
+    EXPECT_NEAR(cloud.positions[0].z, -0.05 - kParticleThickness, 1e-4);
 }
 
 TEST(ParticleCollision, BeginsAnewWithAnotherNumberOfParticles) {
-    ParticleCollision collision({{.map = ExactMap::build(make_box({2, 2, 0.1}))}}, kThickness);
+    ParticleCollision collision({{.map = ExactMap::build(make_box({2, 2, 0.1}))}}, kParticleThickness);
     for (const std::size_t count : {3u, 5u, 1u, 0u, 2u}) {
         Cloud cloud{std::vector<Vec3f>(count, Vec3f{0, 0, 0.5F})};
         for (Vec3f& velocity : cloud.velocities) velocity.z = -90;
         cloud.move();
         EXPECT_EQ(cloud.correct(collision).size(), count);
-        for (const Vec3f& p : cloud.positions) EXPECT_NEAR(p.z, 0.05 + kThickness, 1e-4);
+        for (const Vec3f& p : cloud.positions) EXPECT_NEAR(p.z, 0.05 + kParticleThickness, 1e-4);
     }
 }
 
 TEST(ParticleCollision, LeavesPinnedParticlesWhereTheSolverHasThemUntilTheyAreLetGo) {
-    ParticleCollision collision({{.map = ExactMap::build(make_box({2, 2, 0.1}))}}, kThickness);
+    ParticleCollision collision({{.map = ExactMap::build(make_box({2, 2, 0.1}))}}, kParticleThickness);
     Cloud cloud{{{0, 0, 0.5F}}};
     cloud.inverse_masses[0] = 0;
     cloud.velocities[0].z = -60;
@@ -316,12 +321,12 @@ TEST(ParticleCollision, LeavesPinnedParticlesWhereTheSolverHasThemUntilTheyAreLe
     cloud.inverse_masses[0] = 1;
     cloud.velocities[0].z = 60;
     cloud.step(collision);
-    EXPECT_NEAR(cloud.positions[0].z, -0.05 - kThickness, 1e-4);
+    EXPECT_NEAR(cloud.positions[0].z, -0.05 - kParticleThickness, 1e-4);
 }
 
 TEST(ParticleCollision, LeavesAParticleThatHasExplodedAsItIsAndTakesItBack) {
     for (const float bad : {kNan, std::numeric_limits<float>::infinity(), 1e20F, 3e38F, -1e20F}) {
-        ParticleCollision collision({{.map = ExactMap::build(make_box({2, 2, 0.1}))}}, kThickness);
+        ParticleCollision collision({{.map = ExactMap::build(make_box({2, 2, 0.1}))}}, kParticleThickness);
         Cloud cloud{{{0, 0, 0.5F}, {0.5F, 0, 0.5F}, {0, 0.5F, 0.5F}}};
         cloud.step(collision);
         cloud.previous = cloud.positions;
@@ -336,18 +341,18 @@ TEST(ParticleCollision, LeavesAParticleThatHasExplodedAsItIsAndTakesItBack) {
         EXPECT_TRUE(cloud.correct(collision).empty());
         cloud.velocities[0] = {0, 0, -60};
         cloud.step(collision);
-        EXPECT_NEAR(cloud.positions[0].z, 0.05 + kThickness, 1e-4);
+        EXPECT_NEAR(cloud.positions[0].z, 0.05 + kParticleThickness, 1e-4);
         EXPECT_EQ(collision.lost_count(), 0u);
     }
 }
 
 TEST(ParticleCollision, LeavesAVelocityThatIsNotFiniteAndCorrectsThePosition) {
-    ParticleCollision collision({{.map = ExactMap::build(make_box({2, 2, 0.1}))}}, kThickness);
+    ParticleCollision collision({{.map = ExactMap::build(make_box({2, 2, 0.1}))}}, kParticleThickness);
     Cloud cloud{{{0, 0, 0.5F}}};
     cloud.positions[0].z = -0.5F;
     cloud.velocities[0].z = kNan;
     cloud.correct(collision);
-    EXPECT_NEAR(cloud.positions[0].z, 0.05 + kThickness, 1e-4);
+    EXPECT_NEAR(cloud.positions[0].z, 0.05 + kParticleThickness, 1e-4);
     EXPECT_TRUE(std::isnan(cloud.velocities[0].z));
 }
 
@@ -356,7 +361,7 @@ TEST(ParticleCollision, GivesTheSameBitsForAnyNumberOfThreadsAndInCopies) {
     const auto run = [&](unsigned thread_count, bool copies) {
         test::Random random(5);
         ParticleCollision collision({{.map = torus}, {.map = torus, .pose = {Rotation{}, {1, 0, 0}}}},
-                                    kThickness, {.thread_count = thread_count});
+                                    kParticleThickness, {.thread_count = thread_count});
         Cloud cloud = cloud_in_cube(random, 5000, 2);
         for (int n = 0; n < 10; ++n) {
             for (Vec3f& velocity : cloud.velocities) velocity += test::in_cube(random, 10);
@@ -377,11 +382,11 @@ TEST(ParticleCollision, PushesOutOfDistanceMapsAndCustomMapsWithTheVelocityThatI
     const std::array<ColliderMap, 2> balls{DistanceMap::build(make_sphere(1, 80, 40)),
                                            std::make_shared<test::AnalyticBall>(1.0F)};
     for (const ColliderMap& ball : balls) {
-        ParticleCollision collision({{.map = ball}}, kThickness, {.friction = 0});
+        ParticleCollision collision({{.map = ball}}, kParticleThickness, {.friction = 0});
         Cloud cloud{{{0.02F, 0, 1.05F}}};
         cloud.velocities[0].z = -6;
         cloud.step(collision);
-        EXPECT_NEAR(length(cloud.positions[0]), 1 + kThickness, 3e-3);
+        EXPECT_NEAR(length(cloud.positions[0]), 1 + kParticleThickness, 3e-3);
         EXPECT_NEAR(cloud.velocities[0].z, 0, 0.2);
     }
 }
@@ -395,7 +400,7 @@ TEST(ParticleCollision, RefusesWhatItCannotWorkWithAndChangesNothing) {
     refuse("thickness", [&] { ParticleCollision({{.map = box}}, std::nan("")); });
     refuse("friction", [&] { ParticleCollision({{.map = box}}, 0.01, {.friction = -1}); });
     refuse("scale of 0", [&] { ParticleCollision({{.map = box, .scale = {}}}, 0.01); });
-    ParticleCollision collision({{.map = box}}, kThickness);
+    ParticleCollision collision({{.map = box}}, kParticleThickness);
     refuse("friction", [&] { collision.set_collider_friction(0, -1); });
     refuse("length 2", [&] { collision.set_collider_pose(0, {Rotation{2, 0, 0, 0}, {}}); });
     refuse("not finite", [&] { collision.place_collider(0, {Rotation{}, {std::nan(""), 0, 0}}); });
@@ -408,12 +413,13 @@ TEST(ParticleCollision, RefusesWhatItCannotWorkWithAndChangesNothing) {
     for (const double seconds : {0.0, -1.0, std::nan(""), std::numeric_limits<double>::infinity()})
         refuse_step("seconds", {previous, positions, velocities, masses}, seconds);
     const auto one = [](auto& array) { return std::span(array).first(1); };
-    refuse_step("1 previous positions", {one(previous), positions, velocities, masses}, kSeconds);
-    refuse_step("1 velocities", {previous, positions, one(velocities), masses}, kSeconds);
-    refuse_step("1 inverse masses", {previous, positions, velocities, one(masses)}, kSeconds);
+    refuse_step("1 previous positions", {one(previous), positions, velocities, masses}, kParticleSeconds);
+    refuse_step("1 velocities", {previous, positions, one(velocities), masses}, kParticleSeconds);
+    refuse_step("1 inverse masses", {previous, positions, velocities, one(masses)}, kParticleSeconds);
     for (const float bad : {-1.0F, kNan, std::numeric_limits<float>::infinity()}) {
         masses[1] = bad;
-        refuse_step("particle 1 has an inverse mass", {previous, positions, velocities, masses}, kSeconds);
+        refuse_step("particle 1 has an inverse mass", {previous, positions, velocities, masses},
+                    kParticleSeconds);
     }
-    EXPECT_EQ(collision.correct({previous, positions}, kSeconds).size(), 2u);
+    EXPECT_EQ(collision.correct({previous, positions}, kParticleSeconds).size(), 2u);
 }
