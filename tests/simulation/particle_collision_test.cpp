@@ -402,6 +402,7 @@ TEST(ParticleCollision, RefusesWhatItCannotWorkWithAndChangesNothing) {
     refuse("scale of 0", [&] { ParticleCollision({{.map = box, .scale = {}}}, 0.01); });
     ParticleCollision collision({{.map = box}}, kParticleThickness);
     refuse("friction", [&] { collision.set_collider_friction(0, -1); });
+    refuse("too large for a float", [&] { collision.set_collider_pose(0, {{}, {-1e39, 0, 0}}); });
     refuse("length 2", [&] { collision.set_collider_pose(0, {Rotation{2, 0, 0, 0}, {}}); });
     refuse("not finite", [&] { collision.place_collider(0, {Rotation{}, {std::nan(""), 0, 0}}); });
     std::vector<Vec3f> previous(2, {0, 0, 2}), positions(2), velocities(2);

@@ -73,6 +73,8 @@ TEST(SimulationSetUp, RefusesAColliderWhoseScaleIsZeroOrNoNumber) {
     expect_words(refusal_of_scale({1, 0, 1}), "collider 1");
     expect_words(refusal_of_scale({1, 1, kNaNOption}), "collider 1");
     expect_words(refusal_of_scale({1 / 0.0, 1, 1}), "collider 1");
+    expect_words(refusal_of_scale({1e39, 1, 1}), "collider 1");
+    expect_words(refusal_of_scale({1, 1e-60, 1}), "collider 1");
     EXPECT_EQ(refusal_of_scale({1, -2, 0.5}), "");
 }
 

@@ -57,7 +57,8 @@ void require_option(bool condition, const std::string& sentence) {
 }
 
 void require_valid(const RigidTransform& pose, const std::string& owner) {
-    if (!is_finite(pose.translation)) fail(owner + " has a translation that is not finite");
+    if (!is_finite(Vec3f(pose.translation)))
+        fail(owner + " has a translation that is not finite, or too large for a float");
     // As far as rounding to float leads a unit quaternion, and more. Written so that NaN fails it.
     constexpr double kTolerance = 1e-4;
     const double size = length(pose.rotation);
@@ -268,8 +269,9 @@ namespace {
 
 void require_valid(const Collider& collider, const SimulationOptions& options, const std::string& name) {
     for (const double scale : {collider.scale.x, collider.scale.y, collider.scale.z})
-        if (scale == 0 || !std::isfinite(scale))
-            fail(name + " has a scale of " + std::to_string(scale) + "; it must be finite and not 0");
+        if (static_cast<float>(scale) == 0 || !std::isfinite(static_cast<float>(scale)))
+            fail(name + " has a scale of " + std::to_string(scale) +
+                 "; it must be finite and not 0, also as a float");
     require_valid(collider.pose, name);
     if (!is_finite(collider.linear_velocity) || !is_finite(collider.angular_velocity))
         fail(name + " has a velocity that is not finite");
