@@ -63,9 +63,11 @@ class ParticleCollision {
     /// exploded, units.
     static constexpr float kFarthest = 1e12F;
 
-    /// @param colliders  of any kind of map, where they stand; their velocities do not count
-    /// @param thickness  the distance that particles keep from the surface, units; not negative. At least 16
-    ///                   steps of a map's lattice (2^-21 of its radius) are kept. docs/thickness.md
+    /// @param colliders  of any kind of map, where they stand; their velocities do not count, but have to be
+    /// finite
+    /// @param thickness  the distance that particles keep from the surface, units; 0 to 1e9. At least 16
+    ///                   steps of a map's lattice (2^-19 of its radius) are kept. A particle that is swept
+    ///                   to a surface may be nearer until the next step. docs/thickness.md
     /// @throws Error InvalidOptions
     ParticleCollision(std::vector<Collider> colliders, double thickness,
                       const ParticleCollisionOptions& options = {});

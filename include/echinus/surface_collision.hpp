@@ -35,14 +35,15 @@ struct SurfaceCollisionOptions {
 /// No face meets a model, nor with self_collision another face, after any correct(); exceptions, which
 /// unresolved_count() counts, are those of SimulationOptions::surface_collision. Beside a collider without an
 /// exact map only particles collide. Contact begins to push at the thickness, and pushes the harder the
-/// nearer: after a hard impact a particle may be at a third of it. Copies are independent. Different objects
+/// nearer: after a hard impact little of it may be left. Copies are independent. Different objects
 /// may be used by different threads at a time, one object by one.
 class SurfaceCollision {
   public:
     /// @param positions  [n] where the particles begin: no faces meet there, but see untangle
     /// @param faces      of those particles; at least one
-    /// @param colliders  where they stand; their velocities do not count
-    /// @param thickness  the distance to keep from colliders, units; not negative. docs/thickness.md
+    /// @param colliders  where they stand; their velocities do not count, but have to be finite
+    /// @param thickness  the distance to keep from colliders, units; 0 to 1e9. It is never less than a
+    ///                   fiftieth of the mean edge, and pushes off what begins nearer. docs/thickness.md
     /// @throws Error InvalidOptions, naming what intersects; InvalidMesh
     SurfaceCollision(std::vector<Vec3f> positions, std::vector<Triangle> faces,
                      std::vector<Collider> colliders, double thickness,
@@ -62,9 +63,10 @@ class SurfaceCollision {
     /// last one ended, positions().
     ///
     /// A particle is corrected that ends farther than a thousandth of the thickness from where the solver has
-    /// put it; others keep their bits. Its velocity gets the same change, and at an impact nothing of it
-    /// leads into the surface. A particle whose position is not finite, or farther than 1e12 units from where
-    /// it was, stays there for others to meet, and is not corrected.
+    /// put it; others keep their bits there, so that only positions() is free of intersections to the bit.
+    /// Its velocity gets the same change, and at an impact nothing of it leads into the surface. A particle
+    /// whose position is not finite, or farther than 1e12 units from where it was, stays there for others to
+    /// meet, and is not corrected.
     ///
     /// Cost: a frame of a simulation with surface_collision (docs/surfaces_measured.md). Allocates while its
     /// arrays of pairs grow.
@@ -73,7 +75,7 @@ class SurfaceCollision {
     /// @param seconds     that the step took; positive
     /// @return the particles whose positions were corrected, ascending; until the next call
     /// @throws Error InvalidOptions for arrays of other sizes and a time that is not positive; then nothing
-    /// has changed
+    /// has changed. Diverged where a collider leaves all bounds; then the object is of no more use
     std::span<const std::uint32_t> correct(std::span<Vec3f> positions, std::span<Vec3f> velocities,
                                            double seconds);
 
