@@ -120,7 +120,7 @@ test('a closed mesh that is inside out is reported unless it is mended, and an o
 });
 
 test('an open mesh is reported with the number of its border edges', async () => {
-    const page = await browser.open('#model=torus&particles=400', SMALL);
+    const page = await browser.open('#model=torus&particles=400&self=false', SMALL);
     await untilFrame(page, 1);
     await choose(page, 'open.obj', OPEN_TETRAHEDRON);
     await untilReport(page, '3 border edges');
