@@ -22,7 +22,7 @@ struct SurfaceCollisionOptions {
     bool self_collision = true; ///< the faces do not meet each other either
     /// Distance that layers keep from each other, units; the thickness if not given. Near small faces less.
     std::optional<double> self_thickness{};
-    /// What begins intersecting, or inside a closed model, is parted instead of refused, where it can be.
+    /// A start that intersects, or lies inside a closed model, is parted instead of refused, where it can be.
     bool untangle = false;
     unsigned thread_count = 1; ///< as in ParticleCollisionOptions
 };

@@ -2,6 +2,7 @@
 #include "simulation/start/validation.hpp"
 
 #include <echinus/error.hpp>
+#include <echinus/particle_collision.hpp>
 #include <echinus/simulation.hpp>
 #include <echinus/surface_collision.hpp>
 
@@ -12,9 +13,6 @@
 namespace echinus {
 
 namespace {
-
-/// Farther than this in a step, units, a particle has exploded.
-constexpr double kFarthest = 1e12;
 
 /// A step of the simulation converges to a tolerance, so that less than this is no correction; share of the
 /// thickness.
@@ -83,6 +81,7 @@ void SurfaceCollision::State::send(std::span<const Vec3f> positions) {
     for (std::size_t i = 0; i < particles.size(); ++i) {
         const Vec3d motion = Vec3d(positions[i]) - Vec3d(simulation.positions()[i]);
         Particle& particle = particles[i];
+        constexpr double kFarthest{ParticleCollision::kFarthest};
         particle.has_exploded = !(dot(motion, motion) <= kFarthest * kFarthest); // by NaN, too
         particle.sent = particle.has_exploded ? Vec3d{} : motion;
         simulation.set_particle_velocity(i, particle.sent);

@@ -24,7 +24,7 @@ class ParticleCollision:
     colliders
         Where they stand; their velocities do not count.
     thickness
-        The distance that particles keep from the surface; not negative.
+        The distance that particles keep from the surface (0 to 1e9).
     friction
         Coulomb's coefficient between particle and model; 0 is ice (0 to 1e9).
     allow_open_colliders
@@ -120,7 +120,7 @@ class ParticleCollision:
 class SurfaceCollision:
     """Keeps the faces that join the particles of any solver off models and off each other.
 
-    No face meets a model, nor another face, after any :meth:`correct`, within the limits of docs/surfaces.md. Several
+    No face meets a model, nor another face, after any :meth:`correct`, within the limits of docs/limits.md. Several
     threads may call; one at a time computes.
 
     Parameters
@@ -132,7 +132,7 @@ class SurfaceCollision:
     colliders
         Where they stand; their velocities do not count.
     thickness
-        The distance to keep from colliders; not negative.
+        The distance to keep from colliders (0 to 1e9); never less than a fiftieth of the mean edge.
     friction
         Coulomb's coefficient; 0 is ice (0 to 1e9).
     self_thickness

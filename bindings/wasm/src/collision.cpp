@@ -36,7 +36,7 @@ bool has_exploded(const Vec3f& p) {
     return !(std::fabs(p.x) <= kFarthest && std::fabs(p.y) <= kFarthest && std::fabs(p.z) <= kFarthest);
 }
 
-/// What has exploded goes on from where it was.
+/// A particle that has exploded goes on from where it was.
 void correct(Collision& collision, double seconds) {
     auto& [kind, positions, previous, velocities, corrected] = collision;
     for (std::size_t i = 0; i < positions.size(); ++i)

@@ -62,7 +62,7 @@ void Collisions::relax(Particles& particles, SimulationProfile& profile, const W
 
 void Collisions::keep_free(Particles& particles, SimulationProfile& profile) {
     unproven_.clear();
-    // What was pushed by one collider may be near another.
+    // A particle that one collider pushed may be near another.
     if (std::find(is_away_.begin(), is_away_.end(), 1) != is_away_.end()) leave_out_away(particles);
     for (std::size_t i = 0; i < collisions_.size(); ++i) {
         if (is_away_[i] != 0) continue;

@@ -63,7 +63,7 @@ bool ExactCollision::is_away(const AlignedBox<double>& starts, const AlignedBox<
     return places.distance(Vec3d(now_.map.centre)) > (1 + kRoundingOfBoxes) * double{now_.map.radius} + reach;
 }
 
-/// What is known moves along with a collider that has moved, unless nobody asks.
+/// Known contacts move along with a collider that has moved, unless nobody asks.
 void ExactCollision::follow() {
     if (pose_ == known_pose_) return;
     known_.follow(now_);
