@@ -31,12 +31,21 @@ void ImplicitStep::spread(std::span<std::uint8_t> marks) const {
 }
 
 void ImplicitStep::begin(const Motion& motion, std::span<const Vec3d> accelerations,
-                         std::span<const std::uint8_t> is_held, double step, double drag) {
+                         std::span<const std::uint8_t> is_held, double step, double drag,
+                         const Others& others) {
     is_held_ = is_held;
     translations_.begin_step(is_held);
-    elastic_.begin_step(motion.places, step);
+    const std::size_t count = motion.particle_count();
+    std::copy(motion.places.begin(), motion.places.end(), trial_.begin());
+    std::copy(others.places.begin(), others.places.end(),
+              trial_.begin() + static_cast<std::ptrdiff_t>(count));
+    elastic_.begin_step(trial_, step);
+    for (std::size_t i = count; i < masses_.size(); ++i) {
+        inertia_[i] = masses_[i] / (step * step);
+        inertial_[i] = others.inertial[i - count];
+    }
     total_inertia_ = 0;
-    for (std::size_t i = 0; i < masses_.size(); ++i) {
+    for (std::size_t i = 0; i < count; ++i) {
         const Vec3d place = motion.places[i], velocity = motion.velocities[i];
         // The step in seconds that the velocity at its end has acted, and the places and velocities before
         // it.
@@ -147,15 +156,9 @@ void ImplicitStep::hold(const Workers& workers) {
 
 void ImplicitStep::calm(Places start, std::span<Vec3d> guess, const Workers& workers) {
     // What moves as a whole goes on.
-    Vec3d common;
-    double mass = 0;
-    for (std::size_t i = 0; i < guess.size(); ++i) {
-        common += (guess[i] - start[i]) * masses_[i];
-        mass += masses_[i];
-    }
-    const bool is_free = std::find(is_held_.begin(), is_held_.end(), 1) == is_held_.end();
-    common *= is_free ? 1 / mass : 0;
-    for (std::size_t i = 0; i < guess.size(); ++i) trial_[i] = start[i] + common;
+    const ScratchVector<Vec3d> common =
+        common_displacements(start, guess, masses_, bodies(), is_held_, workers);
+    for (std::size_t i = 0; i < guess.size(); ++i) trial_[i] = start[i] + common[bodies()[i]];
     const double most = energy(trial_, nullptr, workers);
     for (std::uint32_t halving = 0; halving < threshold::kMostHalvingsOfGuess; ++halving) {
         if (energy(guess, nullptr, workers) <= most) return;

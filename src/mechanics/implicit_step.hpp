@@ -66,8 +66,13 @@ class ImplicitStep {
     /// Where inertia leads: begins a step. @param accelerations  [particle] by outer forces
     /// @param is_held  [particle] 1 for those that do not follow forces, but goals
     /// @param drag     the rate at which a velocity decays, 1/s
+    /// @param others   of particles after those of the motion, which know nothing of drag and of steps before
+    struct Others {
+        Places places, inertial; ///< where they are, and where inertia and outer forces lead them
+    };
     void begin(const Motion& motion, std::span<const Vec3d> accelerations,
-               std::span<const std::uint8_t> is_held, double step, double drag = 0);
+               std::span<const std::uint8_t> is_held, double step, double drag = 0,
+               const Others& others = {});
     /// Brings a guess nearer to what only moves as a whole until the energy without contacts is no greater
     /// than there, so that a step which only descends ends no higher, however far inertia leads.
     /// @param start  [particle] where the step begins; held particles as in the guess
@@ -122,7 +127,7 @@ class ImplicitStep {
     std::span<const std::uint8_t> is_held_;
     std::vector<Vec3d> inertial_; ///< y
     std::vector<double> inertia_; ///< c m / h^2
-    double total_inertia_ = 0;    ///< of what is not held
+    double total_inertia_ = 0;    ///< of particles of the motion that are not held
     std::vector<Vec3d> gradient_, trial_;
     std::vector<Float4> right_side_, direction_;
 };

@@ -25,6 +25,11 @@ inline constexpr double kBodyTolerance = 0.1;
 /// Newton's steps in the translations of whole bodies, after each of all particles. Fewer leave momentum.
 inline constexpr std::uint32_t kMostBalancingSteps = 8;
 
+/// Stiffness of a free collider's tetrahedron over mass size^2 / h^2, the resistance of its inertia in a
+/// step. At an impact its control points stray from their pose by this share of what they go in a step. More
+/// makes the linear systems worse conditioned.
+inline constexpr double kBodyStiffness = 1e3;
+
 // ---- The materials ----
 
 /// Radians: a hinge that is flatter at rest is flat, but for rounding in floats, and bends by a quadratic

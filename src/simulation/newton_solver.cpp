@@ -78,9 +78,64 @@ std::vector<double> NewtonSolver::strengths() {
     return strengths;
 }
 
+bool NewtonSolver::holds(std::size_t collider) const {
+    return std::any_of(deformable.attachments.begin(), deformable.attachments.end(),
+                       [&](const Attachment& attachment) { return attachment.collider == collider; });
+}
+
+/// Colliders that are free are unknowns of the steps, but those that hold particles: these go by the load of
+/// the frame before.
+void NewtonSolver::find_free_bodies() {
+    if (!contacts_) return;
+    const std::span<const FreeBody> known = contacts_->free_bodies();
+    std::size_t count = 0;
+    bool is_known = true;
+    for (std::uint32_t c = 0; c < colliders.size(); ++c) {
+        const RigidBody* const body = motions.body_of(c);
+        motions.leave_to_step(c, body != nullptr && !holds(c));
+        if (!motions.is_unknown(c)) continue;
+        is_known = is_known && count < known.size() && known[count].is_of(c, *body);
+        ++count;
+    }
+    if (is_known && count == known.size()) return;
+    std::vector<FreeBody> bodies;
+    ElasticParts parts = elastic_parts(deformable, options);
+    for (std::uint32_t c = 0; c < colliders.size(); ++c) {
+        if (!motions.is_unknown(c)) continue;
+        bodies.emplace_back(c, static_cast<std::uint32_t>(parts.masses.size()), *motions.body_of(c));
+        bodies.back().add_to(parts, options.time_step);
+    }
+    step_ = ImplicitStep(parts);
+    is_held_.resize(parts.masses.size(), 0);
+    contacts_->set_free_bodies(std::move(bodies), step_.masses(), step_.bodies());
+}
+
+/// A body that is an unknown goes nowhere before the step.
+RigidTransform NewtonSolver::pose_without_contact(std::size_t collider, double seconds) const {
+    return motions.is_unknown(collider) ? colliders[collider].pose : pose_after(colliders[collider], seconds);
+}
+
+/// By inertia and as much of gravity as the last step has left.
+RigidTransform NewtonSolver::guess(const FreeBody& body, double seconds) {
+    const RigidBody& rigid = *motions.body_of(body.collider());
+    return rigid.after(colliders[body.collider()].pose, options.gravity * rigid.left_of(options.gravity),
+                       seconds);
+}
+
+/// The collider is where contacts have let its body go, and has got momentum by that.
+void NewtonSolver::end_step_of(const FreeBody& body, double seconds) {
+    RigidBody& rigid = *motions.body_of(body.collider());
+    Collider& collider = colliders[body.collider()];
+    const RigidTransform led = rigid.after(collider.pose, options.gravity, seconds);
+    collider.pose = body.safe_pose;
+    rigid.push(collider.pose, body.load(led, seconds), options.gravity, seconds);
+    rigid.give_velocities(collider);
+}
+
 void NewtonSolver::step() {
     const Workers::Session session(workers_);
     bounds_.require_sound();
+    find_free_bodies();
     const std::uint64_t truncated_before = profile.truncated_count;
     {
         const Stopwatch stopwatch(profile.collision_seconds);
@@ -143,18 +198,16 @@ std::uint32_t NewtonSolver::part_count() {
     double longest = handles_.longest_displacement(time_of(0), time_of(1));
     for (std::size_t c = 0; c < colliders.size(); ++c) {
         Collider after = colliders[c];
-        after.pose = pose_after(colliders[c], options.time_step);
-        const bool holds =
-            std::any_of(deformable.attachments.begin(), deformable.attachments.end(),
-                        [&](const Attachment& attachment) { return attachment.collider == c; });
-        is_near_[c] = holds || (meets_some_[c] != 0 &&
-                                CarryField::may_carry(colliders[c], after, now_, motion_.particle_count(),
-                                                      room, threshold::kTouch * thickness_))
+        after.pose = pose_without_contact(c, options.time_step);
+        is_near_[c] = holds(c) || (meets_some_[c] != 0 &&
+                                   CarryField::may_carry(colliders[c], after, now_, motion_.particle_count(),
+                                                         room, threshold::kTouch * thickness_))
                           ? 1
                           : 0;
         const double rigid = is_near_[c] != 0 ? CarryField::longest_displacement(colliders[c], after) : 0;
         longest = std::max(longest, rigid + deformations_[c].longest);
     }
+    for (FreeBody& body : free_bodies()) body.goal_pose = guess(body, options.time_step);
     const double overlap = contacts_->overlap_ahead(colliders, now_, guess(motion_.places, options.time_step),
                                                     may_touch_, workers_);
     const double parts = std::ceil(std::max(longest / (threshold::kMostCarried * thickness_),
@@ -168,24 +221,34 @@ bool NewtonSolver::step_part(const FramePart& part) {
     const float share = part.end - part.begin;
     const double seconds = options.time_step * double{share};
     colliders_before_ = colliders;
-    for (Collider& collider : colliders) collider.pose = pose_after(collider, seconds);
+    for (std::size_t c = 0; c < colliders.size(); ++c) colliders[c].pose = pose_without_contact(c, seconds);
     if (!find_start(part, share <= threshold::kLeastPartOfFrame)) {
         colliders = colliders_before_;
         return false;
     }
     if (contacts_) contacts_->particles().begin_step(colliders_before_, colliders, motion_.places, is_held_);
-    const ScratchVector<Vec3d> from = exact_start();
-    ScratchVector<Vec3d> places = guess(from, seconds);
+    ScratchVector<Vec3d> from = exact_start();
+    ScratchVector<Vec3d> places = guess(from, seconds), led = from;
+    for (ScratchVector<Vec3d>* const all : {&from, &places, &led}) all->resize(step_.masses().size());
+    for (FreeBody& body : free_bodies()) {
+        body.safe_pose = colliders[body.collider()].pose;
+        body.put(body.safe_pose, from);
+        body.put(guess(body, seconds), places);
+        body.put(motions.body_of(body.collider())->after(body.safe_pose, options.gravity, seconds), led);
+    }
     choose_orders(share < 1);
-    step_.begin(motion_, accelerations_, is_held_, seconds, options.air_drag);
+    const auto count = motion_.particle_count();
+    step_.begin(motion_, accelerations_, is_held_, seconds, options.air_drag,
+                {Places(from).subspan(count), Places(led).subspan(count)});
     step_.calm(from, places, workers_);
     minimise(places, seconds);
     const ScratchVector<Vec3d> velocities_before(motion_.velocities.begin(), motion_.velocities.end(),
                                                  workers_.scratch());
     const ScratchVector<std::uint8_t> nothing_touches(contacts_ ? 0 : places.size(), workers_.scratch());
     advance(motion_, places, contacts_ ? contacts_->touching() : std::span(nothing_touches), seconds);
+    for (const FreeBody& body : free_bodies()) end_step_of(body, seconds);
     if (contacts_) contacts_->particles().end_step(motion_.places, motion_.velocities, seconds);
-    for (std::size_t i = 0; i < places.size(); ++i) {
+    for (std::size_t i = 0; i < count; ++i) {
         gained_[i] = (motion_.velocities[i] - velocities_before[i]) * (1 / seconds);
         // A held particle is led, and has no motion of its own.
         if (is_held_[i] != 0) motion_.is_smooth[i] = 0;
@@ -225,7 +288,7 @@ bool NewtonSolver::find_start(const FramePart& part, bool is_least) {
                            threshold::kTouch * thickness_);
     if (field.is_zero() && !(handles_.longest_displacement(time_of(part.begin), time_of(part.end)) > 0))
         return true;
-    field.carry(start_, is_held_, workers_);
+    field.carry(start_, std::span(is_held_).first(motion_.particle_count()), workers_);
     return contacts_->carry(colliders_before_, colliders, deformations_, part, now_, start_, is_held_,
                             is_least, workers_);
 }

@@ -28,6 +28,12 @@ class NewtonSolver : public Solver {
 
   private:
     std::vector<double> strengths();
+    std::span<FreeBody> free_bodies() { return contacts_ ? contacts_->free_bodies() : std::span<FreeBody>(); }
+    void find_free_bodies();
+    bool holds(std::size_t collider) const;
+    RigidTransform pose_without_contact(std::size_t collider, double seconds) const;
+    RigidTransform guess(const FreeBody& body, double seconds);
+    void end_step_of(const FreeBody& body, double seconds);
     double time_of(float share) const { return (frame + double{share}) * options.time_step; }
     void require_ways();
     void deform();

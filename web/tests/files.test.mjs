@@ -157,10 +157,13 @@ test('a line of faults shows only faintly through the cloth that hides it', asyn
         for (let press = 0; press < count; ++press) await page.keyboard.press(key);
         await page.waitForTimeout(500);
     };
-    // The cloth is held above it, right after it has begun to fall anew.
+    // The cloth is held above it, right after it has begun to fall anew: as often as it takes to catch it there.
     await untilFrame(page, 10);
-    await page.locator('#restart').click();
-    await page.waitForFunction(() => Number(document.body.dataset.frame) < 8 && (document.getElementById('pause').click(), true));
+    await page.waitForFunction(() => {
+        const isAbove = Number(document.body.dataset.frame) < 8;
+        document.getElementById(isAbove ? 'pause' : 'restart').click();
+        return isAbove;
+    });
     await page.waitForFunction(() => document.body.dataset.paused === 'true');
     await turn('ArrowDown', 5);
     const beside = await red();

@@ -4,6 +4,7 @@
 #include "mechanics/small_matrix.hpp"
 
 #include <algorithm>
+#include <limits>
 
 namespace echinus {
 
@@ -79,6 +80,21 @@ double BodyTranslations::imbalance(Places forces, std::span<const double> inerti
     for (std::size_t body = 0; body < bodies_.size(); ++body)
         if (inertias[body] > 0) most = std::max(most, length(sums[body]) / inertias[body]);
     return most;
+}
+
+ScratchVector<Vec3d> common_displacements(Places from, Places to, std::span<const double> masses,
+                                          std::span<const std::uint32_t> bodies,
+                                          std::span<const std::uint8_t> is_held, const Workers& workers) {
+    ScratchVector<Vec3d> sums(bodies.size(), workers.scratch());
+    ScratchVector<double> body_masses(bodies.size(), workers.scratch());
+    for (std::size_t i = 0; i < bodies.size(); ++i) {
+        const double mass = is_held[i] != 0 ? std::numeric_limits<double>::infinity() : masses[i];
+        body_masses[bodies[i]] += mass;
+        if (is_held[i] == 0) sums[bodies[i]] += (to[i] - from[i]) * mass;
+    }
+    for (std::size_t i = 0; i < bodies.size(); ++i)
+        if (bodies[i] == i) sums[i] *= 1 / body_masses[i];
+    return sums;
 }
 
 } // namespace echinus

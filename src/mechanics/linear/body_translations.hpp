@@ -36,4 +36,10 @@ class BodyTranslations {
     std::vector<std::uint8_t> is_bound_; ///< [body, by its first row] 1 where any row of it is held
 };
 
+/// [body, by its first row] the displacement that all of it has in common; 0 where any of it is held.
+/// @param bodies  [row] the first row of its body
+ScratchVector<Vec3d> common_displacements(Places from, Places to, std::span<const double> masses,
+                                          std::span<const std::uint32_t> bodies,
+                                          std::span<const std::uint8_t> is_held, const Workers& workers);
+
 } // namespace echinus

@@ -89,25 +89,35 @@ std::vector<double> weights_at(const Vec3d& place, std::span<const Parent> paren
     return weights;
 }
 
-/// [node] its number among the coarse ones, or kNone.
-std::vector<std::uint32_t> choose_coarse(const Rows<Block>& graph, Neighbourhood& neighbourhood) {
-    std::vector<std::uint32_t> numbers(graph.row_count(), BlockMatrix::kNone);
-    std::vector<bool> is_covered(graph.row_count());
+struct CoarseNodes {
+    std::vector<std::uint32_t> numbers; ///< [node] its number among the coarse ones, or kNone
     std::uint32_t count = 0;
+};
+
+/// @param keeps_small  whether all nodes of a part that has no more of them than it takes to represent its
+/// rotations are coarse
+CoarseNodes choose_coarse(const Rows<Block>& graph, Neighbourhood& neighbourhood, bool keeps_small) {
+    constexpr auto kSmall = static_cast<std::uint32_t>(threshold::kMostParents);
+    CoarseNodes coarse{std::vector<std::uint32_t>(graph.row_count(), BlockMatrix::kNone)};
+    std::vector<bool> is_covered(graph.row_count());
     for (std::uint32_t node = 0; node < graph.row_count(); ++node) {
         if (is_covered[node]) continue;
-        numbers[node] = count++;
+        coarse.numbers[node] = coarse.count++;
+        if (keeps_small && neighbourhood.around(node, kSmall).size() <= kSmall) continue;
         for (const std::uint32_t near : neighbourhood.around(node, threshold::kCoarseSpacing))
             is_covered[near] = true;
     }
-    return numbers;
+    return coarse;
 }
 
 } // namespace
 
 Coarsening coarsen(const Rows<Block>& graph, std::span<const Vec3d> places) {
     Neighbourhood neighbourhood(graph);
-    const std::vector<std::uint32_t> numbers = choose_coarse(graph, neighbourhood);
+    CoarseNodes coarse = choose_coarse(graph, neighbourhood, true);
+    // Where most parts are that small, there would be no end of it.
+    if (coarse.count > graph.row_count() / 2) coarse = choose_coarse(graph, neighbourhood, false);
+    const std::vector<std::uint32_t>& numbers = coarse.numbers;
     Coarsening result;
     std::vector<Parent> parents;
     for (std::uint32_t node = 0; node < graph.row_count(); ++node) {

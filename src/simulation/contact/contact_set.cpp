@@ -112,7 +112,8 @@ double ContactSet::barrier_force(const Contact& contact, const Bristle& before) 
         contact.mobility;
     const double of_push =
         std::min(before.push * threshold::kBarrierOfPush, before.force * threshold::kMostBarrierGrowth);
-    return std::max(of_weight, std::min(of_push, threshold::kMostBarrierStrain / contact.yielding));
+    return std::max({of_weight, threshold::kBarrierOfPush * heaviest_,
+                     std::min(of_push, threshold::kMostBarrierStrain / contact.yielding)});
 }
 
 void ContactSet::add(const Contact& contact, const Vec3d& start, std::optional<double> gap) {
@@ -137,7 +138,7 @@ double ContactSet::push_of(const Held& contact, double gap) {
 
 double ContactSet::gap_of(const Held& contact, Places places) const {
     double gap = contact.offset;
-    for (std::size_t k = 0; k < 4; ++k)
+    for (std::size_t k = 0; k < contact.part_count; ++k)
         gap += contact.weights[k] * dot(contact.normal, places[contact.particles[k]]);
     return gap;
 }
@@ -145,7 +146,8 @@ double ContactSet::gap_of(const Held& contact, Places places) const {
 /// Along the contact's plane, since it began to hold.
 Vec3d ContactSet::slip_of(const Held& contact, Places places) const {
     Vec3d slip = contact.slip_offset;
-    for (std::size_t k = 0; k < 4; ++k) slip += places[contact.particles[k]] * contact.weights[k];
+    for (std::size_t k = 0; k < contact.part_count; ++k)
+        slip += places[contact.particles[k]] * contact.weights[k];
     return slip - contact.normal * dot(contact.normal, slip);
 }
 
@@ -192,12 +194,12 @@ void ContactSet::add_derivatives(Places places, std::span<Vec3d> gradient, Block
         } else if (gap.second == 0) {
             continue;
         }
-        for (std::size_t k = 0; k < 4; ++k) {
+        for (std::size_t k = 0; k < contact.part_count; ++k) {
             if (contact.weights[k] == 0) continue;
             const std::uint32_t i = contact.particles[k];
             gradient[i] += force * contact.weights[k];
             if (hessian == nullptr) continue;
-            for (std::size_t l = 0; l < 4; ++l) {
+            for (std::size_t l = 0; l < contact.part_count; ++l) {
                 const double weight = contact.weights[k] * contact.weights[l];
                 if (weight == 0) continue;
                 const std::uint32_t j = contact.particles[l];

@@ -35,21 +35,29 @@ struct ContactKey {
 class ContactSet : public ContactEnergy {
   public:
     struct Contact {
+        /// Four points of the pair, and the control points of a free collider.
+        static constexpr std::size_t kMostParts = 8;
+
         ContactKey key;
-        std::array<std::uint32_t, 4> particles{};
-        std::array<double, 4> weights{}; ///< 0 of what is not the deformable's
-        Vec3d normal;                    ///< of unit length, towards positive weights
-        double offset = 0;               ///< gap = offset + normal . sum of weights * place
-        double thickness = 0;            ///< the gap from which on it pushes
-        double friction = 0;             ///< Coulomb's coefficient
-        double mobility = 0;             ///< of the gap: sum of weight^2 / mass
-        double yielding = 0;             ///< sum of weight^2 / the force that strains the material there by 1
+        std::array<std::uint32_t, kMostParts> particles{};
+        std::array<double, kMostParts> weights{}; ///< 0 of what is no unknown
+        std::size_t part_count = 4;
+        Vec3d normal;         ///< of unit length, towards positive weights
+        double offset = 0;    ///< gap = offset + normal . sum of weights * place
+        double thickness = 0; ///< the gap from which on it pushes
+        double friction = 0;  ///< Coulomb's coefficient
+        double mobility = 0;  ///< of the gap: sum of weight^2 / mass
+        double yielding = 0;  ///< sum of weight^2 / the force that strains the material there by 1
     };
 
     /// @param obstacle_count  those that contacts name: colliders, then perhaps the deformable itself
     /// @param collider_count  of them those of which loads are kept
     ContactSet(std::size_t particle_count, std::size_t obstacle_count, std::size_t collider_count,
                double gravity);
+
+    /// Of the free bodies. Each contact could bear the heaviest alone: one that grew as a body comes to lie
+    /// on it would be weaker before the body than behind it, and roll it on.
+    void set_heaviest(double mass) { heaviest_ = gravity_ * mass; }
 
     /// Begins a frame of one step or more, whose loads are summed.
     void begin_frame();
@@ -120,7 +128,7 @@ class ContactSet : public ContactEnergy {
     Vec3d held_slip(const Held& contact, Places places) const;
     Vec3d point_of(const Held& contact, Places places) const;
 
-    double gravity_, step_ = 0;
+    double gravity_, step_ = 0, heaviest_ = 0;
     std::size_t obstacle_count_;
     std::vector<Held> contacts_;
     std::vector<Bristle> bristles_;            ///< of the step before, by key

@@ -22,10 +22,10 @@ void ContactSide::to_frame(const PointArrays& world, PointArrays& result) const 
     for (std::size_t i = 0; i < own->vertex_count(); ++i) result.set(i, frame->point_to_local(world[i]));
 }
 
-void ContactSide::to_frame(Places world, PointArrays& result) const {
+void ContactSide::to_frame_ahead(Places world, PointArrays& result) const {
     result.resize(own->vertex_count());
     for (std::size_t i = 0; i < own->vertex_count(); ++i)
-        result.set(i, frame ? frame->point_to_local(Vec3f(world[i])) : Vec3f(world[i]));
+        result.set(i, frame_ahead ? frame_ahead->point_to_local(Vec3f(world[i])) : Vec3f(world[i]));
 }
 
 void ContactSide::place_obstacle(PointArrays places) {
@@ -113,7 +113,7 @@ void ContactSide::take_others(bool starts_there) {
 /// Displacements begin and end near those for which pairs are listed, or both near where those end: so it is
 /// after a step. Pairs are looked for only of the vertices that do neither.
 bool ContactSide::list(Places ends, const Workers& workers) {
-    to_frame(ends, goal);
+    to_frame_ahead(ends, goal);
     bool starts_there = false;
     is_other_.assign(own->vertex_count(), is_listed() ? 0 : 1);
     if (is_listed()) {
@@ -141,7 +141,7 @@ bool ContactSide::list(Places ends, const Workers& workers) {
 }
 
 void ContactSide::measure_towards(Places goals, const Workers& workers) {
-    to_frame(goals, goal);
+    to_frame_ahead(goals, goal);
     base = goal;
     measure(workers);
 }

@@ -29,11 +29,23 @@ struct ContactSide {
     ContactSide(const std::shared_ptr<const Elements>& own_in, const PointArrays& places)
         : own(own_in), obstacle(own_in), pairs(own_in, places) {}
 
-    void set_pose(const RigidTransform& pose) { frame = frame_of(pose); }
+    void set_pose(const RigidTransform& pose) {
+        frame = frame_ahead = frame_of(pose);
+        is_heading = false;
+    }
+    /// The model goes there in the displacements that are looked at.
+    void head_for(const RigidTransform& pose) {
+        frame_ahead = frame_of(pose);
+        is_heading = true;
+    }
     void to_frame(const PointArrays& world, PointArrays& result) const;
-    void to_frame(Places world, PointArrays& result) const;
+    /// Seen from where the model goes.
+    void to_frame_ahead(Places world, PointArrays& result) const;
     Vec3d to_world(const Vec3f& in_frame) const {
         return frame ? frame->point_to_world<double>(in_frame) : Vec3d(in_frame);
+    }
+    Vec3d to_world_ahead(const Vec3f& in_frame) const {
+        return frame_ahead ? frame_ahead->point_to_world<double>(in_frame) : Vec3d(in_frame);
     }
 
     /// The vertices of the obstacle stand there.
@@ -47,6 +59,11 @@ struct ContactSide {
     const PointArrays& obstacle_from() const { return is_deforming ? obstacle_before : obstacle_places; }
     /// How far a pair's vertices of the obstacle come along the normal meanwhile, at most.
     float obstacle_closing(const Pair& pair, const Vec3f& normal) const;
+    /// How far a vertex of the obstacle goes with it in the displacement that is looked at.
+    Vec3d obstacle_ahead(std::uint32_t vertex) const {
+        if (!is_heading) return {};
+        return to_world_ahead(obstacle_places[vertex]) - to_world(obstacle_places[vertex]);
+    }
     /// By which the obstacle has deformed in this step, at a point of a pair.
     Vec3d obstacle_displacement(const Pair& pair, const std::array<double, 4>& shares) const;
 
@@ -81,7 +98,9 @@ struct ContactSide {
     float deformed = 0;                              ///< no vertex goes farther in the displacement
     std::uint32_t number = 0;                        ///< of the collider; of itself the count of colliders
     PairSet pairs;
-    std::optional<FrameChange> frame; ///< of a model that does not stand in the world's
+    /// Of a model that does not stand in the world's: in the safe state, and where displacements lead.
+    std::optional<FrameChange> frame, frame_ahead;
+    bool is_heading = false; ///< may the two differ?
     float thickness = 0, ready = 0, friction = 0, least_gap = 0;
     float extent = 0;                   ///< of the obstacle's coordinates
     PointArrays listed_from, listed_to; ///< where displacements begin and end for which pairs are listed

@@ -34,6 +34,11 @@ void ParticleContacts::begin_step(const std::vector<Collider>& before, const std
         if (found.inside) began_inside_.push_back({found.particle, found.obstacle});
 }
 
+void ParticleContacts::move(std::uint32_t collider, const RigidTransform& pose) {
+    for (std::size_t o = 0; o < obstacles_.size(); ++o)
+        if (obstacles_[o].number == collider) after_[o].pose = pose;
+}
+
 void ParticleContacts::Answers::resize(std::size_t count) {
     particles.resize(count);
     colliders.resize(count);
@@ -94,7 +99,8 @@ bool ParticleContacts::came_through_a_side(const Found& found, const Vec3d& plac
 }
 
 void ParticleContacts::add_to(ContactSet& contacts, Places places, std::span<const double> masses,
-                              std::span<const double> strengths, bool is_solved) {
+                              std::span<const double> strengths, std::span<const FreeBody> free_bodies,
+                              bool is_solved) {
     if (empty()) return;
     find(places, threshold::kParticleReach * thickness_);
     for (const Found& found : found_) {
@@ -113,13 +119,19 @@ void ParticleContacts::add_to(ContactSet& contacts, Places places, std::span<con
         if (!(gap < threshold::kReady * thickness_)) continue;
         contact.key = {number, PairKind::VertexFace, {i, i, i, i}};
         contact.particles.fill(i);
-        contact.weights = {1, 0, 0, 0};
+        contact.weights[0] = 1;
         contact.offset = -dot(contact.normal, found.point);
         contact.thickness = thickness_;
         contact.friction = friction_;
         contact.mobility = 1 / masses[i];
         contact.yielding = 1 / strengths[i];
-        contacts.add(contact, carried(i, found.obstacle), is_solved ? std::optional(gap) : std::nullopt);
+        Vec3d start = carried(i, found.obstacle);
+        for (const FreeBody& body : free_bodies) {
+            if (body.collider() != number) continue;
+            start = start_[i];
+            body.join(contact, start, found.point);
+        }
+        contacts.add(contact, start, is_solved ? std::optional(gap) : std::nullopt);
     }
 }
 

@@ -2,6 +2,7 @@
 
 #include "mechanics/energy_term.hpp"
 #include "simulation/contact/contact_set.hpp"
+#include "simulation/contact/free_body.hpp"
 
 #include <echinus/collider.hpp>
 #include <echinus/simulation.hpp>
@@ -30,9 +31,11 @@ class ParticleContacts {
     /// @param is_held  [particle]
     void begin_step(const std::vector<Collider>& before, const std::vector<Collider>& after, Places start,
                     std::span<const std::uint8_t> is_held);
+    /// A free body has gone there in the step.
+    void move(std::uint32_t collider, const RigidTransform& pose);
     /// Adds the contacts at these places. @param strengths, is_solved  as SurfaceContacts::find_contacts()
     void add_to(ContactSet& contacts, Places places, std::span<const double> masses,
-                std::span<const double> strengths, bool is_solved);
+                std::span<const double> strengths, std::span<const FreeBody> free_bodies, bool is_solved);
     /// Puts particles that are inside outside.
     /// @param is_put  [particle] out: 1 for those
     /// @return whether there were any

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <limits>
+#include <numeric>
 
 namespace echinus {
 
@@ -15,26 +16,30 @@ SafeDisplacements::SafeDisplacements(std::span<ContactSide> sides, Places goals,
     : sides_(sides), goals_(goals), is_held_(is_held), masses_(masses), share_(share), workers_(workers),
       ends_(goals.begin(), goals.end(), workers.scratch()), pushed_(goals.size(), workers.scratch()),
       pushed_by_(goals.size(), kNoObstacle, workers.scratch()),
-      enough_(sides.size(), ScratchVector<float>(workers.scratch()), workers.scratch()) {}
+      enough_(sides.size(), ScratchVector<float>(workers.scratch()), workers.scratch()),
+      closed_counts_(sides.size(), workers.scratch()) {}
 
 Places SafeDisplacements::find() {
-    for (ContactSide& side : sides_) side.to_frame(goals_, side.goal);
+    for (ContactSide& side : sides_) side.to_frame_ahead(goals_, side.goal);
     for (ScratchVector<float>& of_side : enough_) of_side.clear();
     has_converged_ = false;
     for (int round = 0; round < threshold::kMostPushingRounds && !has_converged_; ++round) {
         has_converged_ = true;
         for (std::size_t s = 0; s < sides_.size(); ++s) {
-            sides_[s].to_frame(ends_, sides_[s].base);
+            sides_[s].to_frame_ahead(ends_, sides_[s].base);
             sides_[s].measure(workers_);
             has_converged_ = !correct(sides_[s], enough_[s]) && has_converged_;
         }
     }
     unresolved_count_ = 0;
+    std::fill(closed_counts_.begin(), closed_counts_.end(), 0);
     for (std::size_t s = 0; s < sides_.size(); ++s)
         for (std::size_t p = 0; p < enough_[s].size(); ++p)
-            if (!(sides_[s].pairs.separations()[p].gap > 0) ||
-                (pushed(sides_[s], p) >= enough_[s][p] && plane_between(sides_[s], p).left() < 0))
+            if (!(sides_[s].pairs.separations()[p].gap > 0))
                 ++unresolved_count_;
+            else if (pushed(sides_[s], p) >= enough_[s][p] && plane_between(sides_[s], p).left() < 0)
+                ++closed_counts_[s];
+    unresolved_count_ = std::accumulate(closed_counts_.begin(), closed_counts_.end(), unresolved_count_);
     return ends_;
 }
 
@@ -130,7 +135,7 @@ bool SafeDisplacements::push_apart(ContactSide& side, const Pair& pair, const Pl
         const float back = closing[k] - (most[part] - push[part]);
         if (is_held_[i] != 0 || !(back > 0)) continue;
         side.base.set(i, side.base[i] + normal * (part == 0 ? back : -back));
-        ends_[i] = side.to_world(side.base[i]);
+        ends_[i] = side.to_world_ahead(side.base[i]);
         pushed_[i] += back;
         pushed_by_[i] = side.number;
         is_any_pushed = true;

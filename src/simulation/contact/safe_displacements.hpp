@@ -34,6 +34,8 @@ class SafeDisplacements {
     /// Pairs that touch in the safe state, or that are not kept apart: what is held closes them, or there is
     /// too little room.
     std::size_t unresolved_count() const { return unresolved_count_; }
+    /// [side] those of them that are not kept apart.
+    std::span<const std::size_t> closed_counts() const { return closed_counts_; }
 
   private:
     /// Between the parts of a pair: how far they may close along its normal, and how far they do.
@@ -60,6 +62,7 @@ class SafeDisplacements {
     ScratchVector<std::uint32_t> pushed_by_;
     ScratchVector<ScratchVector<float>> enough_; ///< [side][pair] as of correct()
     std::size_t unresolved_count_ = 0;
+    ScratchVector<std::size_t> closed_counts_;
     bool has_converged_ = false;
 };
 

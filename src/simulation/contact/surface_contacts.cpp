@@ -114,6 +114,19 @@ SurfaceContacts::SurfaceContacts(const Deformable& deformable, const std::vector
     safe_places_.resize(own_->vertex_count());
 }
 
+void SurfaceContacts::set_free_bodies(std::vector<FreeBody> free_bodies, std::span<const double> masses,
+                                      std::span<const std::uint32_t> bodies) {
+    free_bodies_ = std::move(free_bodies);
+    double heaviest = 0;
+    for (const FreeBody& body : free_bodies_) heaviest = std::max(heaviest, body.mass());
+    contacts_.set_heaviest(heaviest);
+    masses_.assign(masses.begin(), masses.end());
+    bodies_.assign(bodies.begin(), bodies.end());
+    is_touching_.assign(masses.size(), 0);
+    stopped_by_.assign(masses.size(), kNoObstacle);
+    safe_places_.resize(masses.size());
+}
+
 void SurfaceContacts::begin_frame() {
     contacts_.begin_frame();
     unresolved_count_ = 0;
@@ -139,7 +152,7 @@ bool SurfaceContacts::carry(const std::vector<Collider>& before, const std::vect
     is_held_ = is_held;
     start_ = from;
     set_safe(from);
-    ScratchVector<Vec3d> places(safe_places_.size(), workers.scratch());
+    ScratchVector<Vec3d> places(own_->vertex_count(), workers.scratch());
     for (std::size_t i = 0; i < places.size(); ++i) places[i] = Vec3d(carried[i]);
     for (ContactSide& side : sides_) {
         const bool is_model = !side.pairs.is_of_itself();
@@ -172,6 +185,7 @@ double SurfaceContacts::overlap_ahead(const std::vector<Collider>& colliders, co
     std::fill(may_touch.begin(), may_touch.end(), std::uint8_t{0});
     for (ContactSide& side : sides_) {
         if (!side.pairs.is_of_itself()) side.set_pose(colliders[side.number].pose);
+        if (const FreeBody* const body = free_body_of(side.number)) side.head_for(body->goal_pose);
         side.set_safe(from);
         side.list(guess, workers);
         side.measure_towards(guess, workers);
@@ -182,7 +196,7 @@ double SurfaceContacts::overlap_ahead(const std::vector<Collider>& colliders, co
 
 void SurfaceContacts::set_safe(const PointArrays& places) {
     safe_ = places;
-    for (std::size_t i = 0; i < safe_places_.size(); ++i) safe_places_[i] = Vec3d(places[i]);
+    for (std::size_t i = 0; i < own_->vertex_count(); ++i) safe_places_[i] = Vec3d(places[i]);
     const float extent = largest_coordinate(places, own_->vertex_count());
     for (ContactSide& side : sides_) side.least_gap = (extent + side.extent) * threshold::kLeastGap;
 }
@@ -193,10 +207,16 @@ void SurfaceContacts::begin_step(const std::vector<Collider>& colliders, const P
     is_held_ = is_held;
     if (!is_carried_) start_ = places;
     set_safe(places);
+    for (FreeBody& body : free_bodies_) {
+        body.start_pose = body.safe_pose = colliders[body.collider()].pose;
+        body.goal_pose = body.fit(guess, body.safe_pose);
+        body.put(body.safe_pose, safe_places_);
+    }
     std::fill(is_touching_.begin(), is_touching_.end(), std::uint8_t{0});
     std::fill(stopped_by_.begin(), stopped_by_.end(), kNoObstacle);
     for (ContactSide& side : sides_) {
         if (!side.pairs.is_of_itself()) side.set_pose(colliders[side.number].pose);
+        if (const FreeBody* const body = free_body_of(side.number)) side.head_for(body->goal_pose);
         if (!is_carried_) side.moves = side.has_deformed = false;
         side.set_safe(safe_);
         side.list(guess, workers);
@@ -224,7 +244,7 @@ bool SurfaceContacts::find_ends(std::span<Vec3d> places, std::span<const double>
         for (std::size_t i = 0; i < places.size(); ++i) places[i] = is_held_[i] != 0 ? goals[i] : ends[i];
         for (std::size_t i = 0; i < places.size(); ++i)
             if (const std::uint32_t by = displacements.pushed_by()[i]; by != kNoObstacle) stopped_by_[i] = by;
-        if (!displacements.has_converged()) return false;
+        if (!displacements.has_converged() || meets_what_cannot_yield(displacements)) return false;
         bool is_any_added = false;
         for (ContactSide& side : sides_) is_any_added = side.list(places, workers) || is_any_added;
         if (!is_any_added) return true;
@@ -232,36 +252,70 @@ bool SurfaceContacts::find_ends(std::span<Vec3d> places, std::span<const double>
     return false;
 }
 
-/// [body, by its first particle] the displacement from the safe state that all of it has in common, which
-/// nothing within it takes from it; 0 where any are held.
-ScratchVector<Vec3d> SurfaceContacts::common_displacements(Places goals, const Workers& workers) const {
-    ScratchVector<Vec3d> sums(goals.size(), workers.scratch());
-    ScratchVector<double> masses(goals.size(), workers.scratch());
-    for (std::size_t i = 0; i < goals.size(); ++i) {
-        const double mass = is_held_[i] != 0 ? std::numeric_limits<double>::infinity() : masses_[i];
-        masses[bodies_[i]] += mass;
-        if (is_held_[i] == 0) sums[bodies_[i]] += (goals[i] - safe_places_[i]) * mass;
+/// Of free bodies that move: they stop where a pair would close all the same, between them and what is held.
+bool SurfaceContacts::meets_what_cannot_yield(const SafeDisplacements& displacements) {
+    bool is_any = false;
+    for (std::size_t s = 0; s < sides_.size(); ++s) {
+        FreeBody* const body = free_body_of(sides_[s].number);
+        if (body == nullptr) continue;
+        body->is_stopped = displacements.closed_counts()[s] > 0 && body->goal_pose != body->safe_pose;
+        is_any = is_any || body->is_stopped;
     }
-    for (std::size_t i = 0; i < goals.size(); ++i)
-        if (bodies_[i] == i) sums[i] *= 1 / masses[i];
-    return sums;
+    return is_any;
 }
 
-/// Marks what did not reach its goal. @param is_stopped  [body] set to 1 where any of it did not
+FreeBody* SurfaceContacts::free_body_of(std::uint32_t collider) {
+    for (FreeBody& body : free_bodies_)
+        if (body.collider() == collider) return &body;
+    return nullptr;
+}
+
+/// Free bodies go where their control points are wanted, as rigid as they are. @param goals  in, out
+void SurfaceContacts::head_for(std::span<Vec3d> goals) {
+    for (FreeBody& body : free_bodies_) {
+        body.goal_pose = body.fit(goals, body.safe_pose);
+        body.put(body.goal_pose, goals);
+    }
+    for (ContactSide& side : sides_)
+        if (const FreeBody* const body = free_body_of(side.number)) side.head_for(body->goal_pose);
+}
+
+/// Free bodies have come where they went.
+void SurfaceContacts::arrive() {
+    for (FreeBody& body : free_bodies_) {
+        body.safe_pose = body.goal_pose;
+        particles_.move(body.collider(), body.safe_pose);
+    }
+    for (ContactSide& side : sides_)
+        if (const FreeBody* const body = free_body_of(side.number)) side.set_pose(body->safe_pose);
+}
+
+/// Marks what did not reach its goal, and free bodies that it was stopped by. @param is_stopped  [body] set
+/// to 1 where any of it did not
 /// @return how many particles did not, and whether they belong to bodies that were not marked
 SurfaceContacts::Stopped SurfaceContacts::mark_stopped(Places goals, Places ends,
                                                        std::span<std::uint8_t> is_stopped,
                                                        const Workers& workers) {
     Stopped stopped;
     const ScratchVector<std::uint8_t> before(is_stopped.begin(), is_stopped.end(), workers.scratch());
+    const auto stop = [&](std::uint32_t body) {
+        is_stopped[body] = 1;
+        if (before[body] == 0) stopped.is_any_new = true;
+    };
     missed_ = 0;
     for (std::size_t i = 0; i < goals.size(); ++i) {
         const double missed = length(goals[i] - ends[i]);
         missed_ = std::max(missed_, missed);
         if (!(missed > 0)) continue;
         ++stopped.count;
-        is_touching_[i] = is_stopped[bodies_[i]] = 1;
-        if (before[bodies_[i]] == 0) stopped.is_any_new = true;
+        is_touching_[i] = 1;
+        stop(bodies_[i]);
+        if (FreeBody* const body = free_body_of(stopped_by_[i])) body->is_stopped = true;
+    }
+    for (FreeBody& body : free_bodies_) {
+        if (!std::exchange(body.is_stopped, false)) continue;
+        ++stopped.count;
+        stop(body.first_point());
     }
     return stopped;
 }
@@ -280,8 +334,9 @@ std::size_t SurfaceContacts::go_towards(std::span<Vec3d> places, const StepEnerg
                   kLast = kFirstWithout + threshold::kMostHalvings;
     Scratch& scratch = workers.scratch();
     const ScratchVector<Vec3d> wanted(places.begin(), places.end(), scratch);
-    const ScratchVector<Vec3d> common = common_displacements(wanted, workers);
     const std::vector<Vec3d>& from = safe_places_;
+    const ScratchVector<Vec3d> common =
+        common_displacements(from, wanted, masses_, bodies_, is_held_, workers);
     ScratchVector<Vec3d> goals = wanted;
     ScratchVector<std::uint8_t> is_stopped(goals.size(), scratch); // [body]
     std::optional<double> most_energy;
@@ -296,6 +351,7 @@ std::size_t SurfaceContacts::go_towards(std::span<Vec3d> places, const StepEnerg
             const Vec3d kept = keeps_common ? common[bodies_[i]] : Vec3d{};
             goals[i] = from[i] + kept + (wanted[i] - from[i] - kept) * share;
         }
+        head_for(goals);
         std::copy(goals.begin(), goals.end(), places.begin());
         const bool is_safe = find_ends(places, masses_, 1, workers);
         const Stopped stopped = mark_stopped(goals, places, is_stopped, workers);
@@ -312,21 +368,21 @@ std::size_t SurfaceContacts::go_towards(std::span<Vec3d> places, const StepEnerg
             if (energy(places) <= *most_energy) break;
         }
     }
-    for (std::size_t i = 0; i < goals.size(); ++i) {
-        safe_places_[i] = places[i];
-        safe_.set(i, Vec3f(places[i]));
-    }
+    std::copy(places.begin(), places.end(), safe_places_.begin());
+    for (std::size_t i = 0; i < own_->vertex_count(); ++i) safe_.set(i, Vec3f(places[i]));
+    arrive();
     return most_stopped;
 }
 
 std::size_t SurfaceContacts::advance(std::span<Vec3d> places, const StepEnergy& energy,
                                      const Workers& workers) {
-    const ScratchVector<Vec3d> goals(places.begin(), places.end(), workers.scratch());
+    ScratchVector<Vec3d> goals(places.begin(), places.end(), workers.scratch());
     std::size_t stopped = 0;
     for (int pass = 0; pass < threshold::kMostPasses; ++pass) {
         std::copy(goals.begin(), goals.end(), places.begin());
         stopped = go_towards(places, energy, workers);
         if (std::exchange(is_begun_, false)) unresolved_count_ += unresolved_;
+        head_for(goals);
         for (ContactSide& side : sides_) {
             side.set_safe(safe_);
             side.measure_towards(goals, workers);
@@ -343,7 +399,9 @@ std::size_t SurfaceContacts::advance(std::span<Vec3d> places, const StepEnergy& 
 void SurfaceContacts::find_contacts(Places goals, bool is_solved) {
     contacts_.clear();
     for (const ContactSide& side : sides_) add_contacts(side, goals, is_solved);
-    particles_.add_to(contacts_, is_solved ? Places(safe_places_) : goals, masses_, strengths_, is_solved);
+    const Places places = is_solved ? Places(safe_places_) : goals;
+    particles_.add_to(contacts_, places.first(own_->vertex_count()), masses_, strengths_, free_bodies_,
+                      is_solved);
 }
 
 float SurfaceContacts::thickness_of(const ContactSide& side, const Pair& pair) const {
@@ -370,6 +428,7 @@ Vec3d SurfaceContacts::slip_start(const ContactSide& side, const Pair& pair,
 void SurfaceContacts::add_contacts(const ContactSide& side, Places goals, bool is_solved) {
     const auto pairs = side.pairs.pairs();
     const auto separations = side.pairs.separations();
+    const FreeBody* const body = free_body_of(side.number);
     for (std::size_t p = 0; p < pairs.size(); ++p) {
         const Pair& pair = pairs[p];
         if (!(separations[p].gap > 0)) continue;
@@ -378,22 +437,25 @@ void SurfaceContacts::add_contacts(const ContactSide& side, Places goals, bool i
         // The proven gap may be less than the distance by a tenth: it decides what is measured again in
         // double.
         double approach = 0;
-        for (std::size_t k = 0; k < moving; ++k)
-            approach = std::max(approach, length(goals[pair.points[k]] - safe_places_[pair.points[k]]));
+        std::array<Vec3d, 4> displacements;
+        for (std::size_t k = 0; k < 4; ++k) {
+            const std::uint32_t i = pair.points[k];
+            displacements[k] = k < moving ? goals[i] - safe_places_[i] : side.obstacle_ahead(i);
+            approach = std::max(approach, length(displacements[k]));
+        }
         if (!(double{separations[p].gap} - 2 * approach < double{threshold::kReady} * thickness)) continue;
         std::array<Vec3d, 4> points;
         for (std::size_t k = 0; k < 4; ++k)
             points[k] = k < moving ? safe_places_[pair.points[k]]
                                    : side.to_world(side.obstacle_places[pair.points[k]]);
         const std::array<double, 4> shares = nearest_points(pair.kind, points);
-        Vec3d across;
-        for (std::size_t k = 0; k < 4; ++k) across += points[k] * (k < own ? shares[k] : -shares[k]);
+        Vec3d across, ahead;
+        for (std::size_t k = 0; k < 4; ++k) {
+            across += points[k] * (k < own ? shares[k] : -shares[k]);
+            ahead += displacements[k] * (k < own ? shares[k] : -shares[k]);
+        }
         const double distance = length(across);
         if (!(distance > 0)) continue;
-        Vec3d ahead;
-        for (std::size_t k = 0; k < moving; ++k)
-            ahead +=
-                (goals[pair.points[k]] - safe_places_[pair.points[k]]) * (k < own ? shares[k] : -shares[k]);
         const Vec3d normal = normal_of({pair.kind, points, across * (1 / distance), ahead}, distance);
         const double gap = dot(normal, across);
         ContactSet::Contact contact;
@@ -413,15 +475,22 @@ void SurfaceContacts::add_contacts(const ContactSide& side, Places goals, bool i
             contact.mobility += weight * weight / masses_[i];
             contact.yielding += weight * weight / strengths_[i];
         }
+        Vec3d start = slip_start(side, pair, shares);
+        if (body != nullptr) {
+            Vec3d point;
+            for (std::size_t k = own; k < 4; ++k) point += points[k] * shares[k];
+            body->join(contact, start, point);
+        }
         if (!(gap + std::min(dot(normal, ahead), 0.0) < double{threshold::kReady} * thickness) ||
             !(contact.mobility > 0))
             continue;
-        contacts_.add(contact, slip_start(side, pair, shares), is_solved ? std::optional(gap) : std::nullopt);
+        contacts_.add(contact, start, is_solved ? std::optional(gap) : std::nullopt);
     }
 }
 
 void SurfaceContacts::put_outside(std::span<Vec3d> places, const StepEnergy& energy, const Workers& workers) {
-    if (particles_.put_outside(places, is_touching_)) advance(places, energy, workers);
+    if (particles_.put_outside(places.first(own_->vertex_count()), is_touching_))
+        advance(places, energy, workers);
 }
 
 bool SurfaceContacts::stops() const {
@@ -450,6 +519,7 @@ void SurfaceContacts::add_loads(Places places, std::span<const Vec3d> forces,
 }
 
 void SurfaceContacts::end_step(Places places) {
+    for (const FreeBody& body : free_bodies_) frames_[body.collider()] = frame_of(body.safe_pose);
     contacts_.end_step(places, frames_, is_touching_);
 }
 

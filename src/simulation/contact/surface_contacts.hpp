@@ -3,7 +3,9 @@
 #include "simulation/contact/carry_field.hpp"
 #include "simulation/contact/contact_set.hpp"
 #include "simulation/contact/contact_side.hpp"
+#include "simulation/contact/free_body.hpp"
 #include "simulation/contact/particle_contacts.hpp"
+#include "simulation/contact/safe_displacements.hpp"
 #include "simulation/particles.hpp"
 #include "simulation/state/state_archive.hpp"
 
@@ -20,7 +22,8 @@
 namespace echinus {
 
 /// Contact of a deformable's surface with models and with itself, in one room: the same pairs, planes and
-/// gaps serve the energy of contact and friction and the proof that nothing meets (docs/mechanics.md).
+/// gaps serve the energy of contact and friction and the proof that nothing meets (docs/mechanics.md). The
+/// control points of free bodies are particles, too, which come after those of the deformable.
 ///
 /// A step goes from one safe state, in which nothing meets, to the next: pairs are measured in a safe state,
 /// the solver proposes places, and advance() goes towards them as far as the planes between the pairs allow.
@@ -33,6 +36,11 @@ class SurfaceContacts {
     SurfaceContacts(const Deformable& deformable, const std::vector<Collider>& colliders,
                     std::span<const double> masses, std::span<const double> strengths,
                     std::span<const std::uint32_t> bodies, const SimulationOptions& options);
+
+    /// From the next step on these colliders are unknowns of it. @param masses, bodies  of all particles
+    void set_free_bodies(std::vector<FreeBody> free_bodies, std::span<const double> masses,
+                         std::span<const std::uint32_t> bodies);
+    std::span<FreeBody> free_bodies() { return free_bodies_; }
 
     /// Begins a frame of one step or more, whose loads are summed.
     void begin_frame();
@@ -51,7 +59,7 @@ class SurfaceContacts {
                const Workers& workers);
 
     /// By how much displacements to these places would close pairs beyond their gaps, at most; length.
-    /// Colliders stand where they are.
+    /// Colliders stand where they are, but free bodies, which go to their goals.
     /// @param may_touch  [particle] out: 1 for those that contacts may push there
     double overlap_ahead(const std::vector<Collider>& colliders, const PointArrays& from, Places guess,
                          std::span<std::uint8_t> may_touch, const Workers& workers);
@@ -106,7 +114,10 @@ class SurfaceContacts {
     Vec3d slip_start(const ContactSide& side, const Pair& pair, const std::array<double, 4>& shares) const;
     bool find_ends(std::span<Vec3d> places, std::span<const double> masses, float share,
                    const Workers& workers);
-    ScratchVector<Vec3d> common_displacements(Places goals, const Workers& workers) const;
+    bool meets_what_cannot_yield(const SafeDisplacements& displacements);
+    FreeBody* free_body_of(std::uint32_t collider);
+    void head_for(std::span<Vec3d> goals);
+    void arrive();
     struct Stopped {
         std::size_t count = 0;
         bool is_any_new = false;
@@ -123,6 +134,7 @@ class SurfaceContacts {
     std::vector<std::uint32_t> bodies_; ///< [particle]
     std::size_t collider_count_;
     std::vector<ContactSide> sides_; ///< of the colliders, then of itself
+    std::vector<FreeBody> free_bodies_;
     ParticleContacts particles_;
     ContactSet contacts_;
     std::vector<float> most_; ///< by vertex: the most thickness that what is around it leaves room for

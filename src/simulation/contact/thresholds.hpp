@@ -11,9 +11,9 @@ namespace echinus::threshold {
 /// Force of a barrier over the weight that the contact carries. With one layer on it a contact at rest is
 /// 0.77 of the thickness wide, under ten 0.4. More makes contacts wider and stiffer.
 inline constexpr double kBarrierWeights = 5;
-/// Force of a barrier over what its contact pushed with in the step before, where that is more; so a contact
-/// that carries much is 0.4 of the thickness wide, too. And by what it may grow in a step: more lifts what is
-/// suddenly loaded faster than is quiet.
+/// Force of a barrier over what its contact pushed with in the step before, where that is more, and over the
+/// weight of the heaviest free body; so a contact that carries much is 0.4 of the thickness wide, too. And by
+/// what it may grow in a step: more lifts what is suddenly loaded faster than is quiet.
 inline constexpr double kBarrierOfPush = 0.5, kMostBarrierGrowth = 1.5;
 /// Strain of the material that the scale of such a barrier would cause, at most: between two plates that
 /// leave too little room push and barrier would otherwise raise each other without bound.

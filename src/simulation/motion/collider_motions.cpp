@@ -18,6 +18,7 @@ void ColliderMotions::lead_to(std::size_t collider, const std::string& name, con
     motion.is_led = true;
     motion.keys.clear();
     motion.body.reset();
+    motion.is_unknown = false;
     motion.next = pose;
     motion.next->rotation = pose.rotation.normalised();
 }
@@ -25,7 +26,7 @@ void ColliderMotions::lead_to(std::size_t collider, const std::string& name, con
 void ColliderMotions::follow(std::size_t collider, const std::string& name, std::vector<PoseKey> keys) {
     require_valid(keys, name);
     for (PoseKey& key : keys) key.pose.rotation = key.pose.rotation.normalised();
-    motions_[collider] = {.is_led = true, .next = {}, .keys = std::move(keys), .last = {}, .body = {}};
+    motions_[collider] = {.is_led = true, .next = {}, .keys = std::move(keys)};
 }
 
 void ColliderMotions::begin_frame(std::vector<Collider>& colliders, double end_time, double frame_seconds,
@@ -33,8 +34,14 @@ void ColliderMotions::begin_frame(std::vector<Collider>& colliders, double end_t
     for (std::size_t c = 0; c < motions_.size(); ++c) {
         Motion& motion = motions_[c];
         if (!motion.is_led) continue;
-        if (motion.body)
-            motion.next = motion.body->after(colliders[c].pose, loads[c], gravity, frame_seconds);
+        if (motion.is_unknown) {
+            motion.body->give_velocities(colliders[c]);
+            continue;
+        }
+        if (motion.body) {
+            motion.body->push(colliders[c].pose, loads[c], gravity, frame_seconds);
+            motion.next = motion.body->after(colliders[c].pose, frame_seconds);
+        }
         if (!motion.keys.empty()) motion.next = pose_at(motion.keys, end_time);
         // A collider that stays where it was led does not move at all, not even by what was rounded.
         if (motion.next && motion.next != motion.last)

@@ -33,8 +33,17 @@ class ColliderMotions {
     void move(std::size_t collider, const RigidTransform& motion);
 
     void set_free(std::size_t collider, const RigidBody& body) {
-        motions_[collider] = {.is_led = true, .next = {}, .keys = {}, .last = {}, .body = body};
+        motions_[collider] = {.is_led = true, .body = body};
     }
+
+    /// The body of a collider that is free; null: it is not.
+    RigidBody* body_of(std::size_t collider) {
+        std::optional<RigidBody>& body = motions_[collider].body;
+        return body ? &*body : nullptr;
+    }
+    /// A free collider is an unknown of steps from now on: begin_frame() gives it the velocities that it has.
+    void leave_to_step(std::size_t collider, bool is_unknown) { motions_[collider].is_unknown = is_unknown; }
+    bool is_unknown(std::size_t collider) const { return motions_[collider].is_unknown; }
 
     /// Gives the colliders that are led or free the velocities of the frame that begins.
     /// @param end_time  when the frame ends, seconds since the simulation began
@@ -49,10 +58,11 @@ class ColliderMotions {
   private:
     struct Motion {
         bool is_led = false; ///< by a pose or by keys, or it is free
-        std::optional<RigidTransform> next;
-        std::vector<PoseKey> keys;
-        std::optional<RigidTransform> last; ///< where the frame before led
-        std::optional<RigidBody> body;      ///< it is free
+        std::optional<RigidTransform> next{};
+        std::vector<PoseKey> keys{};
+        std::optional<RigidTransform> last{}; ///< where the frame before led
+        std::optional<RigidBody> body{};      ///< it is free
+        bool is_unknown = false;              ///< its body is, in each step
     };
     std::vector<Motion> motions_; ///< one for each collider
 };

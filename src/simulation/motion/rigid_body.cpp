@@ -2,6 +2,7 @@
 
 #include "simulation/start/validation.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <string>
@@ -59,6 +60,9 @@ RigidBody::RigidBody(const TriangleMesh& surface, double mass, const Collider& c
     inertia_[1].y += trace * density;
     inertia_[2].z += trace * density;
     centre_ = centre + origin;
+    const auto& [x, y, z] = second_moments();
+    require_option(x.x > 0 && x.x * y.y - x.y * x.y > 0 && determinant({x, y, z}) > 0,
+                   name + " has faces that contradict each other, so it has no inertia; repair the mesh");
     const Rotation& rotation = collider.pose.rotation;
     velocity_ = collider.linear_velocity + cross(collider.angular_velocity, rotation.apply(centre_));
     angular_velocity_ = collider.angular_velocity;
@@ -69,12 +73,27 @@ Vec3d RigidBody::angular_velocity(const Rotation& rotation) const {
     return rotation.apply(times(inverse(inertia_), rotation.inverse().apply(angular_momentum_)));
 }
 
-RigidTransform RigidBody::after(const RigidTransform& pose, const Load& load, const Vec3d& gravity,
-                                double seconds) {
+void RigidBody::push(const RigidTransform& pose, const Load& load, const Vec3d& gravity, double seconds) {
     const Vec3d arm = pose.rotation.apply(centre_);
-    velocity_ += (gravity + load.force * (1 / mass_)) * seconds;
+    gained_ = gravity + load.force * (1 / mass_);
+    velocity_ += gained_ * seconds;
     angular_momentum_ += (load.torque - cross(arm, load.force)) * seconds;
     angular_velocity_ = angular_velocity(pose.rotation);
+}
+
+RigidTransform RigidBody::after(const RigidTransform& pose, const Vec3d& gravity, double seconds) const {
+    RigidBody pushed = *this;
+    pushed.push(pose, {}, gravity, seconds);
+    return pushed.after(pose, seconds);
+}
+
+double RigidBody::left_of(const Vec3d& gravity) const {
+    const double size_sq = dot(gravity, gravity);
+    return size_sq > 0 ? std::clamp(dot(gained_, gravity) / size_sq, 0.0, 1.0) : 0;
+}
+
+RigidTransform RigidBody::after(const RigidTransform& pose, double seconds) const {
+    const Vec3d arm = pose.rotation.apply(centre_);
     const double speed = length(angular_velocity_);
     RigidTransform end;
     end.rotation = speed > 0
@@ -82,6 +101,21 @@ RigidTransform RigidBody::after(const RigidTransform& pose, const Load& load, co
                        : pose.rotation;
     end.translation = pose.translation + arm + velocity_ * seconds - end.rotation.apply(centre_);
     return end;
+}
+
+void RigidBody::give_velocities(Collider& collider) const {
+    collider.angular_velocity = angular_velocity_;
+    collider.linear_velocity = velocity_ - cross(angular_velocity_, collider.pose.rotation.apply(centre_));
+}
+
+Matrix3 RigidBody::second_moments() const {
+    const double half_trace = (inertia_[0].x + inertia_[1].y + inertia_[2].z) / 2;
+    Matrix3 moments;
+    for (std::size_t k = 0; k < 3; ++k) moments[k] = inertia_[k] * (-1 / mass_);
+    moments[0].x += half_trace / mass_;
+    moments[1].y += half_trace / mass_;
+    moments[2].z += half_trace / mass_;
+    return moments;
 }
 
 bool RigidBody::is_slower_than(double speed) const {
@@ -92,12 +126,13 @@ void RigidBody::turn(const Rotation& rotation) {
     velocity_ = rotation.apply(velocity_);
     angular_momentum_ = rotation.apply(angular_momentum_);
     angular_velocity_ = rotation.apply(angular_velocity_);
+    gained_ = rotation.apply(gained_);
 }
 
 void RigidBody::archive(StateArchive& state) {
     state.value(mass_);
     for (Vec3d* v : {&centre_, &inertia_[0], &inertia_[1], &inertia_[2], &velocity_, &angular_momentum_,
-                     &angular_velocity_}) {
+                     &angular_velocity_, &gained_}) {
         state.value(*v);
         state.require(is_finite(*v));
     }
