@@ -271,6 +271,23 @@ struct Load {
     Vec3d torque; ///< N m, about the pose's translation, as it moves
 };
 
+/// A contact that pushed in the last frame: of a particle, an edge or a face of the deformable with a
+/// collider, or of two of its own.
+struct ContactPoint {
+    /// In place of the number of a collider or of a particle.
+    static constexpr std::uint32_t kNone = 0xFFFFFFFF;
+
+    Vec3d position;         ///< on the deformable, at the end of the frame; world coordinates
+    Vec3d normal;           ///< unit, towards the deformable; towards its first part where both are its own
+    double gap;             ///< at the end of the frame; positive, less than the thickness
+    double normal_impulse;  ///< on the deformable (its first part) along the normal in the frame, N s
+    Vec3d friction_impulse; ///< the same across the normal, N s
+    std::uint32_t collider; ///< kNone: the contact is of the deformable with itself
+    /// Of the first part, and then of the second one if it is the deformable's own, too: a vertex and the
+    /// three of a face, or two and two of edges. kNone where there are fewer.
+    std::array<std::uint32_t, 4> particles;
+};
+
 /// Times and counts of step() since the simulation began. Times are not part of the result.
 struct SimulationProfile {
     double integration_seconds = 0;  ///< Jakobsen: Verlet, and the check for divergence and rest
@@ -459,6 +476,15 @@ class Simulation {
     /// it and then the collider by the body exchanges momentum with the deformable (examples/08_load).
     /// @pre collider_index < colliders().size()
     Load load_on(std::size_t collider_index) const;
+
+    /// Newton: whether the frames that follow record the contacts that push. Off at the beginning; it then
+    /// costs nothing. Not part of a saved state.
+    void record_contacts(bool is_on);
+    /// The contacts that were recorded in the last frame, in an order of their own; valid until the next
+    /// frame. Their impulses divided by the time step sum to load_on() of each collider, except for the loads
+    /// of attached particles and of particles that a collider stopped before contact could
+    /// (SimulationProfile::truncated_count). Empty under Jakobsen.
+    std::span<const ContactPoint> contact_points() const;
 
     /// Gives a particle a velocity, units per second, from which the next frame goes on as from any other:
     /// the material pulls at it and colliders stop it, so a hand that drags particles by setting their

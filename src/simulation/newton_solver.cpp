@@ -156,6 +156,7 @@ void NewtonSolver::step() {
     }
     std::fill(deformations_.begin(), deformations_.end(), Deformation{});
     if (contacts_) {
+        contacts_->end_frame();
         profile.squeezed_count += contacts_->unresolved_count();
         profile.map_query_count += contacts_->particles().take_query_count();
         profile.lost_count += contacts_->particles().take_lost_count();
@@ -345,7 +346,8 @@ void NewtonSolver::minimise(std::span<Vec3d> places, double seconds) {
         std::size_t stopped = 0;
         contact([&] { stopped = contacts_->advance(places, energy, workers_); });
         if (newton + 1 == newton_steps) profile.truncated_count += stopped;
-        if (last_move < budget.tolerance && stopped == 0 && is_balanced) break;
+        if (newton + 1 == newton_steps || (last_move < budget.tolerance && stopped == 0 && is_balanced)) break;
+        contact([&] { contacts_->renew(); });
     }
     contact([&] {
         contacts_->put_outside(places, energy, workers_);
@@ -424,6 +426,14 @@ void NewtonSolver::blow(const Vec3d& wind, double rate) {
 
 Load NewtonSolver::load_on(std::size_t collider) const {
     return contacts_ ? contacts_->load_on(collider, options.time_step) : Load{};
+}
+
+void NewtonSolver::record_contacts(bool is_on) {
+    if (contacts_) contacts_->record(is_on);
+}
+
+std::span<const ContactPoint> NewtonSolver::contact_points() const {
+    return contacts_ ? contacts_->points() : std::span<const ContactPoint>();
 }
 
 void NewtonSolver::archive(StateArchive& state) {

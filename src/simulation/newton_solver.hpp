@@ -20,6 +20,8 @@ class NewtonSolver : public Solver {
     void set_particle_velocity(std::size_t particle, const Vec3d& velocity) override;
     void blow(const Vec3d& wind, double rate) override;
     Load load_on(std::size_t collider) const override;
+    void record_contacts(bool is_on) override;
+    std::span<const ContactPoint> contact_points() const override;
     void archive(StateArchive& state) override;
 
   protected:

@@ -90,6 +90,14 @@ Load Simulation::load_on(std::size_t collider_index) const {
     return solver_->load_on(collider_index);
 }
 
+void Simulation::record_contacts(bool is_on) {
+    solver_->record_contacts(is_on);
+}
+
+std::span<const ContactPoint> Simulation::contact_points() const {
+    return solver_->contact_points();
+}
+
 void Simulation::set_particle_velocity(std::size_t particle, const Vec3d& velocity) {
     solver_->set_particle_velocity(particle, velocity);
 }

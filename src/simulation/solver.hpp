@@ -36,6 +36,8 @@ class Solver {
     virtual void set_particle_velocity(std::size_t particle, const Vec3d& velocity) = 0;
     virtual void blow(const Vec3d& wind, double rate) = 0;
     virtual Load load_on(std::size_t collider) const = 0;
+    virtual void record_contacts(bool is_on) = 0;
+    virtual std::span<const ContactPoint> contact_points() const = 0;
     /// Of all that decides how the simulation goes on. Reading may leave a part of it when it throws.
     virtual void archive(StateArchive& state) = 0;
 

@@ -8,6 +8,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <numeric>
@@ -185,4 +186,64 @@ TEST(Load, OfFrictionIsAgainstTheMotion) {
     const Load load = mean_load(simulation, 0, 15);
     EXPECT_NEAR(load.force.z, -weight, 0.02 * weight);
     EXPECT_NEAR(load.force.x, -0.3 * weight, 0.02 * weight);
+}
+
+namespace {
+
+/// On the first part of a contact, as the mean of the frame.
+Vec3d force_of(const ContactPoint& point, double seconds) {
+    return (point.normal * point.normal_impulse + point.friction_impulse) * (1 / seconds);
+}
+
+} // namespace
+
+TEST(ContactPoints, SumToTheLoadOnEachColliderAndToTheWeightAtRest) {
+    Simulation simulation(sheet_at(0.55, 1.2, 13), colliders_of({make_sphere(0.5, 30, 15)}), kMeasured);
+    simulation.step();
+    EXPECT_TRUE(simulation.contact_points().empty()); // until they are asked for
+    simulation.record_contacts(true);
+    const double weight = weight_of(masses_of(simulation));
+    Vec3d at_rest;
+    for (int i = 0; i < 300; ++i) {
+        const std::uint64_t truncated = simulation.profile().truncated_count;
+        simulation.step();
+        Vec3d sum;
+        for (const ContactPoint& point : simulation.contact_points()) {
+            EXPECT_NEAR(length(point.normal), 1, 1e-6);
+            EXPECT_NEAR(dot(point.normal, point.friction_impulse), 0, 1e-9);
+            EXPECT_GE(point.normal_impulse, 0);
+            EXPECT_GT(point.gap, 0);
+            EXPECT_LT(point.gap, 0.02); // what pushed in a part of the frame may have gone on
+            if (point.collider != 0) continue;
+            EXPECT_NEAR(length(point.position), 0.5, 0.03);
+            sum -= force_of(point, simulation.options().time_step);
+        }
+        if (simulation.profile().truncated_count == truncated)
+            EXPECT_LT(length(sum - simulation.load_on(0).force), 1e-9 * weight) << i;
+        if (i >= 285) at_rest += sum * (1.0 / 15);
+    }
+    EXPECT_NEAR(at_rest.z, -weight, 0.01 * weight);
+    simulation.record_contacts(false);
+    simulation.step();
+    EXPECT_TRUE(simulation.contact_points().empty());
+}
+
+TEST(ContactPoints, BetweenTwoLayersSumToTheWeightOfTheUpperOne) {
+    const Deformable lower = sheet_at(0.07, 0.6, 9), upper = sheet_at(0.1, 0.4, 7);
+    Simulation simulation(combine(std::array{lower, upper}), colliders_of({make_box({2, 2, 0.1})}), kMeasured);
+    simulation.record_contacts(true);
+    const auto is_upper = [&](std::uint32_t particle) { return particle >= lower.particle_count(); };
+    for (int i = 0; i < 150; ++i) simulation.step();
+    double between = 0;
+    for (int i = 0; i < 30; ++i) {
+        simulation.step();
+        for (const ContactPoint& point : simulation.contact_points()) {
+            if (point.collider != ContactPoint::kNone) continue;
+            ASSERT_NE(is_upper(point.particles.front()), is_upper(point.particles.back()));
+            const double turn = is_upper(point.particles.front()) ? 1 : -1;
+            between += turn * force_of(point, simulation.options().time_step).z / 30;
+        }
+    }
+    const double weight = 0.4 * 0.4 * simulation.options().material.density * kStandardGravity;
+    EXPECT_NEAR(between, weight, 0.01 * weight);
 }

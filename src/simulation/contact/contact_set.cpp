@@ -48,6 +48,41 @@ ContactSet::ContactSet(std::size_t particle_count, std::size_t obstacle_count, s
 
 void ContactSet::begin_frame() {
     std::fill(impulses_.begin(), impulses_.end(), Impulse{});
+    recorded_.clear();
+    points_.clear();
+}
+
+void ContactSet::end_frame() {
+    std::sort(recorded_.begin(), recorded_.end(), [](const Recorded& a, const Recorded& b) {
+        return std::tuple_cat(a.key.order(), std::tie(a.number)) <
+               std::tuple_cat(b.key.order(), std::tie(b.number));
+    });
+    for (std::size_t i = 0; i < recorded_.size(); ++i) {
+        ContactPoint point = recorded_[i].point;
+        if (i > 0 && recorded_[i].key.order() == recorded_[i - 1].key.order()) {
+            point.normal_impulse += points_.back().normal_impulse;
+            point.friction_impulse += points_.back().friction_impulse;
+            points_.pop_back();
+        }
+        points_.push_back(point);
+    }
+}
+
+void ContactSet::record(const Held& contact, Places places, double push, const Vec3d& friction) {
+    const bool is_own = contact.key.obstacle >= impulses_.size();
+    const std::size_t first_part = own_count(contact.key.kind);
+    ContactPoint point{.position = {},
+                       .normal = contact.normal,
+                       .gap = gap_of(contact, places),
+                       .normal_impulse = push * step_,
+                       .friction_impulse = friction * -step_,
+                       .collider = is_own ? ContactPoint::kNone : contact.key.obstacle,
+                       .particles = {}};
+    point.particles.fill(ContactPoint::kNone);
+    std::copy_n(contact.key.points.begin(), is_own ? 4 : first_part, point.particles.begin());
+    for (std::size_t k = 0; k < first_part; ++k)
+        point.position += places[contact.particles[k]] * contact.weights[k];
+    recorded_.push_back({contact.key, static_cast<std::uint32_t>(recorded_.size()), point});
 }
 
 Load ContactSet::load_on(std::size_t collider, double seconds) const {
@@ -233,6 +268,7 @@ void ContactSet::end_step(Places places, std::span<const std::optional<FrameChan
         const auto& frame = frames[obstacle];
         if (obstacle < impulses_.size())
             add_load(obstacle, point_of(contact, places), contact.normal * push - friction, frame);
+        if (records_ && (push > 0 || friction != Vec3d{})) record(contact, places, push, friction);
         if (!(push > 0)) continue;
         Bristle bristle{
             contact.key,  {}, turned_to_local(frame, contact.normal), turned_to_local(frame, friction), push,

@@ -61,6 +61,12 @@ class ContactSet : public ContactEnergy {
 
     /// Begins a frame of one step or more, whose loads are summed.
     void begin_frame();
+    /// Sums up what its steps have recorded of each contact.
+    void end_frame();
+    /// Whether steps record the contacts that push.
+    void record(bool is_on) { records_ = is_on; }
+    /// Of the last frame. After end_frame()
+    std::span<const ContactPoint> points() const { return points_; }
     /// @param frames  [obstacle] of the colliders where the step ends, in which their bristles turn along;
     /// none of what stands in the world
     void begin_step(double step, std::span<const std::optional<FrameChange>> frames);
@@ -120,6 +126,7 @@ class ContactSet : public ContactEnergy {
     const Bristle* find(const ContactKey& key) const;
     double barrier_force(const Contact& contact, const Bristle& before) const;
     Bristle remembered(const Contact& contact) const;
+    void record(const Held& contact, Places places, double push, const Vec3d& friction);
     void index_bristles();
     void find_patches();
     Patch& patch_at(std::uint32_t particle, std::uint32_t obstacle, const Vec3d& normal);
@@ -136,6 +143,15 @@ class ContactSet : public ContactEnergy {
     std::vector<std::uint32_t> first_patch_;   ///< [particle] into patches_
     std::vector<Patch> patches_;               ///< in this step
     std::vector<Impulse> impulses_;            ///< by collider, in this frame
+    /// A contact in one step of the frame.
+    struct Recorded {
+        ContactKey key;
+        std::uint32_t number; ///< in the order of the steps
+        ContactPoint point;
+    };
+    bool records_ = false;
+    std::vector<Recorded> recorded_;
+    std::vector<ContactPoint> points_;
 };
 
 } // namespace echinus

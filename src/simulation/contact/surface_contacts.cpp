@@ -376,21 +376,30 @@ std::size_t SurfaceContacts::go_towards(std::span<Vec3d> places, const StepEnerg
 
 std::size_t SurfaceContacts::advance(std::span<Vec3d> places, const StepEnergy& energy,
                                      const Workers& workers) {
-    ScratchVector<Vec3d> goals(places.begin(), places.end(), workers.scratch());
+    std::fill(stopped_by_.begin(), stopped_by_.end(), kNoObstacle);
+    return advance_further(places, energy, workers);
+}
+
+std::size_t SurfaceContacts::advance_further(std::span<Vec3d> places, const StepEnergy& energy,
+                                             const Workers& workers) {
+    goals_.assign(places.begin(), places.end());
     std::size_t stopped = 0;
     for (int pass = 0; pass < threshold::kMostPasses; ++pass) {
-        std::copy(goals.begin(), goals.end(), places.begin());
+        std::copy(goals_.begin(), goals_.end(), places.begin());
         stopped = go_towards(places, energy, workers);
         if (std::exchange(is_begun_, false)) unresolved_count_ += unresolved_;
-        head_for(goals);
+        head_for(goals_);
         for (ContactSide& side : sides_) {
             side.set_safe(safe_);
-            side.measure_towards(goals, workers);
+            side.measure_towards(goals_, workers);
         }
         if (missed_ <= double{most_missed_}) break;
     }
-    find_contacts(goals, true);
     return stopped;
+}
+
+void SurfaceContacts::renew() {
+    find_contacts(goals_, true);
 }
 
 /// @param goals  where particles may go: contacts that push there are ready
@@ -490,7 +499,7 @@ void SurfaceContacts::add_contacts(const ContactSide& side, Places goals, bool i
 
 void SurfaceContacts::put_outside(std::span<Vec3d> places, const StepEnergy& energy, const Workers& workers) {
     if (particles_.put_outside(places.first(own_->vertex_count()), is_touching_))
-        advance(places, energy, workers);
+        advance_further(places, energy, workers);
 }
 
 bool SurfaceContacts::stops() const {

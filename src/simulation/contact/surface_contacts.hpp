@@ -44,6 +44,10 @@ class SurfaceContacts {
 
     /// Begins a frame of one step or more, whose loads are summed.
     void begin_frame();
+    void end_frame() { contacts_.end_frame(); }
+    /// As those of ContactSet.
+    void record(bool is_on) { contacts_.record(is_on); }
+    std::span<const ContactPoint> points() const { return contacts_.points(); }
     /// A collider's vertices stand there, in its body frame.
     void place_obstacle(std::size_t collider, std::span<const Vec3f> vertices);
 
@@ -74,19 +78,21 @@ class SurfaceContacts {
     ParticleContacts& particles() { return particles_; }
     /// Of the step, with the contacts that were measured last.
     using StepEnergy = std::function<double(Places)>;
-    /// Goes from the safe state towards these places as far as is proven safe and raises the energy nowhere,
-    /// and measures all pairs there.
+    /// Goes from the safe state towards these places as far as is proven safe and raises the energy nowhere.
     /// @param places  in: the goals, which the solver has found with these contacts. Out: where the particles
     /// are. Those that nothing stops keep all their digits
     /// @return how many particles were stopped
     std::size_t advance(std::span<Vec3d> places, const StepEnergy& energy, const Workers& workers);
+    /// Measures the contacts anew where advance() has come, for the next proposal. Without it they stay those
+    /// that the solver has found the last one with: in balance, as loads and friction are to be.
+    void renew();
 
     /// Puts particles outside of colliders without faces, as far as those with faces allow.
     void put_outside(std::span<Vec3d> places, const StepEnergy& energy, const Workers& workers);
 
-    /// Has a collider stopped a particle in this step?
+    /// Did a collider stop a particle in the last advance()?
     bool stops() const;
-    /// Loads of what colliders have stopped in this step, or hold. @param forces  [particle] by which
+    /// Loads of what colliders stopped then, or hold. @param forces  [particle] by which
     /// @param held_by  [particle] the collider that holds it, or kNoObstacle
     void add_loads(Places places, std::span<const Vec3d> forces, std::span<const std::uint32_t> held_by,
                    const Workers& workers);
@@ -124,6 +130,7 @@ class SurfaceContacts {
     };
     Stopped mark_stopped(Places goals, Places ends, std::span<std::uint8_t> is_stopped,
                          const Workers& workers);
+    std::size_t advance_further(std::span<Vec3d> places, const StepEnergy& energy, const Workers& workers);
     std::size_t go_towards(std::span<Vec3d> places, const StepEnergy& energy, const Workers& workers);
     void find_contacts(Places goals, bool is_solved);
     void add_contacts(const ContactSide& side, Places goals, bool is_solved);
@@ -149,9 +156,10 @@ class SurfaceContacts {
     bool is_carried_ = false;               ///< in this step
     PointArrays safe_;                      ///< the safe state
     std::vector<Vec3d> safe_places_;        ///< the same, with all digits
+    std::vector<Vec3d> goals_;              ///< of the last advance()
     std::vector<std::uint8_t> is_touching_; ///< [particle] in this step
     std::vector<std::uint32_t>
-        stopped_by_; ///< [particle] the side that stopped it last in this step, or kNoObstacle
+        stopped_by_; ///< [particle] the side that stopped it in the last advance(), or kNoObstacle
 };
 
 } // namespace echinus

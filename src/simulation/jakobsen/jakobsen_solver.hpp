@@ -53,6 +53,8 @@ class JakobsenSolver : public Solver {
     void set_particle_velocity(std::size_t particle, const Vec3d& velocity) override;
     void blow(const Vec3d& wind, double rate) override;
     Load load_on(std::size_t) const override { return {}; }
+    void record_contacts(bool) override {}
+    std::span<const ContactPoint> contact_points() const override { return {}; }
     void archive(StateArchive& state) override;
 
   protected:
