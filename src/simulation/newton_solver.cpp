@@ -346,7 +346,8 @@ void NewtonSolver::minimise(std::span<Vec3d> places, double seconds) {
         std::size_t stopped = 0;
         contact([&] { stopped = contacts_->advance(places, energy, workers_); });
         if (newton + 1 == newton_steps) profile.truncated_count += stopped;
-        if (newton + 1 == newton_steps || (last_move < budget.tolerance && stopped == 0 && is_balanced)) break;
+        if (newton + 1 == newton_steps || (last_move < budget.tolerance && stopped == 0 && is_balanced))
+            break;
         contact([&] { contacts_->renew(); });
     }
     contact([&] {

@@ -207,6 +207,44 @@ TEST(CSimulations, AreSteeredAsInCpp) {
     expect_same_state(simulation, by_cpp);
 }
 
+TEST(CSimulations, SetCollidersFreeAndReportContactsAsInCpp) {
+    Fall fall;
+    const CSimulation simulation = fall.make(c_small_sheet());
+    Simulation by_cpp = fall.make_by_cpp(make_cloth(small_sheet()));
+    expect_ok(echinus_simulation_set_collider_free(simulation.get(), 0, 0.5));
+    by_cpp.set_collider_free(0, 0.5);
+    expect_ok(echinus_simulation_record_contacts(simulation.get(), 1));
+    by_cpp.record_contacts(true);
+    std::size_t seen = 0;
+    for (int i = 0; i < 30; ++i) {
+        step(simulation.get(), 1);
+        step(by_cpp, 1);
+        echinus_array* points = nullptr;
+        expect_ok(echinus_simulation_contact_points(simulation.get(), &points));
+        const std::span<const ContactPoint> expected = by_cpp.contact_points();
+        ASSERT_EQ(echinus_array_count(points), expected.size());
+        const auto* made = static_cast<const echinus_contact_point*>(echinus_array_data(points));
+        for (std::size_t p = 0; p < expected.size(); ++p) {
+            const auto vector = [](const double* v) { return Vec3d{v[0], v[1], v[2]}; };
+            EXPECT_EQ(vector(made[p].position), expected[p].position);
+            EXPECT_EQ(vector(made[p].normal), expected[p].normal);
+            EXPECT_EQ(vector(made[p].friction_impulse), expected[p].friction_impulse);
+            EXPECT_EQ(made[p].gap, expected[p].gap);
+            EXPECT_EQ(made[p].normal_impulse, expected[p].normal_impulse);
+            EXPECT_EQ(made[p].collider, expected[p].collider);
+            EXPECT_TRUE(std::equal(made[p].particles, made[p].particles + 4, expected[p].particles.begin()));
+        }
+        seen += expected.size();
+        echinus_array_destroy(points);
+    }
+    EXPECT_GT(seen, 0u);
+    expect_same_state(simulation, by_cpp);
+    expect_refused(echinus_simulation_set_collider_free(simulation.get(), 0, -1), ECHINUS_INVALID_OPTIONS,
+                   "mass of -1");
+    expect_refused(echinus_simulation_set_collider_free(simulation.get(), 7, 1), ECHINUS_INVALID_ARGUMENT,
+                   "collider");
+}
+
 TEST(CSimulations, LeadCollidersToPosesAndTellTheirLoadsAsInCpp) {
     Fall fall;
     const CSimulation simulation = fall.make(c_small_sheet());

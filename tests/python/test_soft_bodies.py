@@ -82,6 +82,33 @@ def test_the_defaults_are_those_of_a_scene():
     assert not (sampled.surface_collision or sampled.self_collision)
 
 
+def test_the_contacts_of_a_body_at_rest_sum_to_its_weight():
+    simulation = ech.Simulation(soft_box(position=(0, 0, 0.22)), [BELOW])
+    simulation.step()
+    assert len(simulation.contact_points().gaps) == 0
+    simulation.record_contacts()
+    simulation.step(60)
+    points = simulation.contact_points()
+    assert set(points.colliders) == {0} and points.particles.shape == (len(points.gaps), 4)
+    impulses = points.normals * points.normal_impulses[:, np.newaxis] + points.friction_impulses
+    forces = impulses.sum(axis=0) / simulation.options.time_step
+    assert np.allclose(forces, -np.array(simulation.load_on(0).force), rtol=1e-9, atol=1e-9)
+    assert (points.gaps > 0).all() and np.allclose(np.linalg.norm(points.normals, axis=1), 1)
+
+
+def test_a_free_model_falls_until_it_is_led_again():
+    simulation = ech.Simulation(soft_box(position=(0, 0, 9)), [BELOW])
+    simulation.set_collider_free(0, 2)
+    simulation.step(30)
+    fallen = simulation.colliders[0].position[2]
+    assert fallen < -1
+    simulation.set_collider_velocity(0, (0, 0, 0), (0, 0, 0))
+    simulation.step()
+    assert simulation.colliders[0].position[2] == fallen
+    with pytest.raises(ech.Error, match="mass of -1"):
+        simulation.set_collider_free(0, -1)
+
+
 def test_a_body_bears_on_its_floor_and_is_lifted_by_what_deforms():
     simulation = ech.Simulation(soft_box(position=(0, 0, 0.22)), [BELOW])
     assert simulation.load_on(0) == ech.Load((0, 0, 0), (0, 0, 0))

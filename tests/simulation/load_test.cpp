@@ -230,7 +230,8 @@ TEST(ContactPoints, SumToTheLoadOnEachColliderAndToTheWeightAtRest) {
 
 TEST(ContactPoints, BetweenTwoLayersSumToTheWeightOfTheUpperOne) {
     const Deformable lower = sheet_at(0.07, 0.6, 9), upper = sheet_at(0.1, 0.4, 7);
-    Simulation simulation(combine(std::array{lower, upper}), colliders_of({make_box({2, 2, 0.1})}), kMeasured);
+    Simulation simulation(combine(std::array{lower, upper}), colliders_of({make_box({2, 2, 0.1})}),
+                          kMeasured);
     simulation.record_contacts(true);
     const auto is_upper = [&](std::uint32_t particle) { return particle >= lower.particle_count(); };
     for (int i = 0; i < 150; ++i) simulation.step();

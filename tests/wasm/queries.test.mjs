@@ -230,6 +230,24 @@ describe('A simulation', () => {
         assert.ok(Math.abs(position[2] - 15 * scene.timeStep) < 1e-9);
         assert.ok(Math.abs(rotation[0] - Math.cos(Math.PI / 8)) < 1e-9);
     });
+    test('reports the contacts of a frame, which sum to the load on a free collider', () => {
+        const scene = echinus.parseScene(readScene('torus_small.json'));
+        const simulation = scene.makeSimulation(scene.buildMap(scene.makeModel()));
+        simulation.setColliderFree(0.5);
+        simulation.step(20);
+        assert.equal(simulation.contactPoints.gaps.length, 0);
+        simulation.recordContacts();
+        simulation.step();
+        const { normals, normalImpulses, frictionImpulses, colliders, particles } = simulation.contactPoints;
+        assert.equal(particles.length, 4 * colliders.length);
+        const impulses = [0, 0, 0];
+        colliders.forEach((number, i) => {
+            if (number === 0) for (let k = 0; k < 3; ++k) impulses[k] += normals[3 * i + k] * normalImpulses[i] + frictionImpulses[3 * i + k];
+        });
+        const { force } = simulation.loadOn();
+        assert.ok(force[2] < 0, `${force}`);
+        assert.ok(impulses.every((impulse, k) => Math.abs(impulse / scene.timeStep + force[k]) < 0.01 * Math.hypot(...force)), `${impulses} ${force}`);
+    });
     test('continues with other options from its present state', () => {
         const description = { model: { torus: {} }, cloth: { size: [3, 3], particles: [20, 20], position: [0, 0, 0.5] } };
         const scene = echinus.parseScene(description);

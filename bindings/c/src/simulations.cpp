@@ -200,6 +200,37 @@ echinus_status echinus_simulation_load_on(const echinus_simulation* simulation, 
     });
 }
 
+echinus_status echinus_simulation_set_collider_free(echinus_simulation* simulation, size_t index,
+                                                    double mass) {
+    return guarded(__func__, [&] {
+        Simulation& running = running_at(simulation);
+        require_index(index, running.colliders().size(), "collider");
+        running.set_collider_free(index, mass);
+    });
+}
+
+echinus_status echinus_simulation_record_contacts(echinus_simulation* simulation, int32_t is_on) {
+    return guarded(__func__, [&] { running_at(simulation).record_contacts(is_on != 0); });
+}
+
+echinus_status echinus_simulation_contact_points(const echinus_simulation* simulation,
+                                                 echinus_array** points) {
+    return make(__func__, points, [&] {
+        std::vector<echinus_contact_point> made;
+        for (const ContactPoint& point : simulation_at(simulation).contact_points()) {
+            echinus_contact_point& c = made.emplace_back();
+            put_vector(point.position, c.position);
+            put_vector(point.normal, c.normal);
+            put_vector(point.friction_impulse, c.friction_impulse);
+            c.gap = point.gap;
+            c.normal_impulse = point.normal_impulse;
+            c.collider = point.collider;
+            std::copy(point.particles.begin(), point.particles.end(), c.particles);
+        }
+        return array_of(std::move(made));
+    });
+}
+
 echinus_status echinus_simulation_set_particle_velocity(echinus_simulation* simulation, size_t particle,
                                                         const double* velocity) {
     return guarded(__func__, [&] {

@@ -14,6 +14,7 @@ from echinus._core import version as __version__
 from echinus._colliders import (
     Collider,
     ColliderState,
+    ContactPoints,
     Load,
     PoseKey,
     VertexCache,
@@ -86,6 +87,7 @@ __all__ = [
     "BoundaryDistance",
     "Collider",
     "ColliderState",
+    "ContactPoints",
     "Contacts",
     "Deformable",
     "DistanceMap",

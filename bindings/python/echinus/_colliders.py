@@ -78,6 +78,37 @@ class ColliderState:
     angular_velocity: Vector
 
 
+class ContactPoints(NamedTuple):
+    """The contacts that pushed in a frame: of the deformables with models and with themselves.
+
+    Attributes
+    ----------
+    positions
+        [contact, 3] on the deformable, at the end of the frame; world coordinates.
+    normals
+        [contact, 3] unit, towards the deformable; towards its first part where both are its own.
+    gaps
+        [contact] at the end of the frame; positive.
+    normal_impulses
+        [contact] on the deformable (its first part) along the normal in the frame, N s.
+    friction_impulses
+        [contact, 3] the same across the normal, N s.
+    colliders
+        [contact] -1 where the contact is of the deformables with themselves.
+    particles
+        [contact, 4] of the first part, and then of the second one if it is the deformables' own, too: a vertex and the
+        three of a face, or two and two of edges. -1 where there are fewer.
+    """
+
+    positions: NDArray[np.float64]
+    normals: NDArray[np.float64]
+    gaps: NDArray[np.float64]
+    normal_impulses: NDArray[np.float64]
+    friction_impulses: NDArray[np.float64]
+    colliders: NDArray[np.int64]
+    particles: NDArray[np.int64]
+
+
 class Load(NamedTuple):
     """The load on a collider, in the world's axes.
 

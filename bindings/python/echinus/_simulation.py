@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from echinus import _core
 from echinus._arguments import flag, index, json_of, list_of_kind, number, of_kind, path_of, quaternion, threads_of, vector, whole
-from echinus._colliders import Collider, ColliderState, Load, PoseKey, Vector, VertexCache, key_arguments
+from echinus._colliders import Collider, ColliderState, ContactPoints, Load, PoseKey, Vector, VertexCache, key_arguments
 from echinus._deformables import Deformable
 from echinus._errors import Error
 from echinus._maps import AnyMap, DistanceMap, ExactMap
@@ -489,6 +489,30 @@ class Simulation:
         then the model by the body, exchanges momentum with the deformables.
         """
         return Load(*self._simulation.load_on(index("collider", collider)))
+
+    def set_collider_free(self, collider: int, mass: float) -> None:
+        """The next frames move a model freely from its present velocities, as a rigid body of uniform density.
+
+        Gravity and contact with the deformables move it. Needs an exact map of a closed mesh and the solver ``newton``.
+
+        Raises
+        ------
+        Error
+            ``invalid_options``; then nothing has changed.
+        """
+        self._simulation.set_collider_free(index("collider", collider), number("mass", mass))
+
+    def record_contacts(self, is_on: bool = True) -> None:
+        """Whether the frames that follow record the contacts that push. Off at the beginning; not part of a state."""
+        self._simulation.record_contacts(flag("is_on", is_on))
+
+    def contact_points(self) -> ContactPoints:
+        """The contacts that were recorded in the last frame, as arrays that are copies.
+
+        Their impulses divided by the time step sum to :meth:`load_on` of each model, except for the loads of attached
+        particles and of truncated ones. None under ``jakobsen``.
+        """
+        return ContactPoints(*self._simulation.contact_points())
 
     def set_particle_velocity(self, particle: int, velocity: Sequence[float]) -> None:
         """Gives a particle a velocity, units per second. A pinned particle stays."""

@@ -98,6 +98,37 @@ py::tuple load_on(SharedSimulation& shared, std::int64_t index) {
     return py::make_tuple(to_python(load.force), to_python(load.torque));
 }
 
+/// [contact]: positions, normals, gaps, impulses, colliders, particles. Numbers of what is not there are -1.
+py::tuple contact_points(SharedSimulation& shared) {
+    const auto points = shared.alone([](Simulation& s) {
+        return std::vector<ContactPoint>(s.contact_points().begin(), s.contact_points().end());
+    });
+    const auto count = static_cast<py::ssize_t>(points.size());
+    py::array_t<double> positions({count, py::ssize_t{3}}), normals({count, py::ssize_t{3}}), gaps(count),
+        normal_impulses(count), friction_impulses({count, py::ssize_t{3}});
+    py::array_t<std::int64_t> colliders(count), particles({count, py::ssize_t{4}});
+    const auto number = [](std::uint32_t n) {
+        return n == ContactPoint::kNone ? std::int64_t{-1} : std::int64_t{n};
+    };
+    for (py::ssize_t i = 0; i < count; ++i) {
+        const ContactPoint& point = points[static_cast<std::size_t>(i)];
+        const auto put = [&](py::array_t<double>& array, const Vec3d& v) {
+            array.mutable_at(i, 0) = v.x;
+            array.mutable_at(i, 1) = v.y;
+            array.mutable_at(i, 2) = v.z;
+        };
+        put(positions, point.position);
+        put(normals, point.normal);
+        put(friction_impulses, point.friction_impulse);
+        gaps.mutable_at(i) = point.gap;
+        normal_impulses.mutable_at(i) = point.normal_impulse;
+        colliders.mutable_at(i) = number(point.collider);
+        for (py::ssize_t k = 0; k < 4; ++k)
+            particles.mutable_at(i, k) = number(point.particles[static_cast<std::size_t>(k)]);
+    }
+    return py::make_tuple(positions, normals, gaps, normal_impulses, friction_impulses, colliders, particles);
+}
+
 void bind_colliders_of(py::class_<SharedSimulation>& simulation) {
     simulation
         .def("set_collider_velocity",
@@ -130,7 +161,17 @@ void bind_colliders_of(py::class_<SharedSimulation>& simulation) {
                  const std::size_t collider = collider_at(shared, index);
                  shared.change([&](Simulation& s) { s.set_collider_cache(collider, cache); });
              })
-        .def("load_on", load_on);
+        .def("set_collider_free",
+             [](SharedSimulation& shared, std::int64_t index, double mass) {
+                 const std::size_t collider = collider_at(shared, index);
+                 shared.change([&](Simulation& s) { s.set_collider_free(collider, mass); });
+             })
+        .def("load_on", load_on)
+        .def("record_contacts",
+             [](SharedSimulation& shared, bool is_on) {
+                 shared.change([&](Simulation& s) { s.record_contacts(is_on); });
+             })
+        .def("contact_points", contact_points);
 }
 
 void bind_hands(py::class_<SharedSimulation>& simulation) {

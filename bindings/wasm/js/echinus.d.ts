@@ -843,6 +843,19 @@ export class Simulation extends Deletable {
      * @throws InvalidOptions when the scene sets surface_collision and the cloth intersects now; set untangle too
      */
     continueWith(scene: Scene, maps?: AnyMap | readonly AnyMap[]): Simulation;
+    /**
+     * Moves a collider, the first by default, freely from its present velocities: a rigid body of uniform density, moved
+     * by gravity and by contact with the cloth. Needs an exact map of a closed mesh and the solver `newton`.
+     * @param mass  kg, positive
+     * @throws InvalidOptions; then nothing has changed
+     */
+    setColliderFree(mass: number, index?: number): void;
+    /** What the cloth exerted on a collider in the last frame by contact and friction, as its mean over the frame: N, N m. */
+    loadOn(index?: number): { readonly force: Vec3; readonly torque: Vec3 };
+    /** Whether the frames that follow record the contacts that push; off at the beginning. */
+    recordContacts(isOn?: boolean): void;
+    /** The contacts that were recorded in the last frame; copies. */
+    readonly contactPoints: ContactPoints;
     /** Steers a collider, the first by default: it keeps these velocities until they are set again. Units and radians per second. */
     setColliderVelocity(linear: Vec3, angular: Vec3, index?: number): void;
     /**
@@ -874,6 +887,27 @@ export class Simulation extends Deletable {
     containsBatch(inside: FlagBuffer): FlagBuffer;
     /** In world units, for instance for colours by depth. */
     contactsBatch(margin: number, contacts: ContactBuffer): ContactBuffer;
+}
+
+/** The contacts that pushed in a frame: of the cloth with colliders and with itself. */
+export interface ContactPoints {
+    /** [3 count] on the cloth, at the end of the frame; world coordinates. */
+    readonly positions: Float64Array;
+    /** [3 count] unit, towards the cloth; towards its first part where both are its own. */
+    readonly normals: Float64Array;
+    /** [count] at the end of the frame. */
+    readonly gaps: Float64Array;
+    /** [count] on the cloth (its first part) along the normal in the frame, N s. */
+    readonly normalImpulses: Float64Array;
+    /** [3 count] the same across the normal, N s. */
+    readonly frictionImpulses: Float64Array;
+    /** [count] -1 where the contact is of the cloth with itself. */
+    readonly colliders: Int32Array;
+    /**
+     * [4 count] of the first part, and then of the second one if it is the cloth's own, too: a vertex and the three of a
+     * face, or two and two of edges. -1 where there are fewer.
+     */
+    readonly particles: Int32Array;
 }
 
 /** As in echinus/simulation.hpp. Queries are counted over all particles and relaxations. */

@@ -3,7 +3,7 @@ import { Handle, requireOwn, textOf } from './core.mjs';
 import { requireCount, requireFinite, withDefaults } from './errors.mjs';
 import { asJson, requireMap, wrapMap } from './maps.mjs';
 import { Mesh } from './mesh.mjs';
-import { collider, deformableArrays, simulationProfile } from './structs.mjs';
+import { collider, contactPoint, deformableArrays, simulationProfile } from './structs.mjs';
 
 /** A validated scene. */
 export class Scene extends Handle {
@@ -114,6 +114,38 @@ export class Simulation extends Handle {
         requireFinite(linear, 'the linear velocity');
         requireFinite(angular, 'the angular velocity');
         this.core.do('echinus_simulation_set_collider_velocity', this.address, requireCount(index, 'the collider'), ...this.core.vectorsAt(linear, angular));
+    }
+    setColliderFree(mass, index = 0) {
+        this.core.do('echinus_simulation_set_collider_free', this.address, requireCount(index, 'the collider'), mass);
+    }
+    loadOn(index = 0) {
+        const { core } = this;
+        core.do('echinus_simulation_load_on', this.address, requireCount(index, 'the collider'), core.scratch, core.scratch + 24);
+        const numbers = core.copyDoubles(core.scratch, 6);
+        return { force: numbers.slice(0, 3), torque: numbers.slice(3) };
+    }
+    recordContacts(isOn = true) {
+        this.core.do('echinus_simulation_record_contacts', this.address, isOn ? 1 : 0);
+    }
+    get contactPoints() {
+        const { bytes, members } = contactPoint;
+        const all = this.core.copyArray(this.core.make('echinus_simulation_contact_points', this.address), Uint8Array, bytes).buffer;
+        const count = all.byteLength / bytes;
+        const column = (name, ArrayKind) => {
+            const [offset, , width = 1] = members[name];
+            const result = new ArrayKind(width * count);
+            for (let i = 0; i < count; ++i) result.set(new ArrayKind(all, i * bytes + offset, width), i * width);
+            return result;
+        };
+        return {
+            positions: column('position', Float64Array),
+            normals: column('normal', Float64Array),
+            gaps: column('gap', Float64Array),
+            normalImpulses: column('normalImpulse', Float64Array),
+            frictionImpulses: column('frictionImpulse', Float64Array),
+            colliders: column('collider', Int32Array),
+            particles: column('particles', Int32Array),
+        };
     }
     setColliderVertices(vertices, index = 0) {
         requireCount(index, 'the collider');

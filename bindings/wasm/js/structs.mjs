@@ -64,6 +64,10 @@ export const simulationProfile = { bytes: 96, members: {
     mapQueryCount: [48, 'BigUint64'], rescuedCount: [56, 'BigUint64'], lostCount: [64, 'BigUint64'],
     truncatedCount: [72, 'BigUint64'], measuredPairCount: [80, 'BigUint64'], squeezedCount: [88, 'BigUint64'],
 } };
+export const contactPoint = { bytes: 112, members: {
+    position: [0, 'Float64', 3], normal: [24, 'Float64', 3], gap: [48, 'Float64'], normalImpulse: [56, 'Float64'],
+    frictionImpulse: [64, 'Float64', 3], collider: [88, 'Uint32'], particles: [92, 'Uint32', 4],
+} };
 
 /** Of choices, in the order of their numbers. */
 export const words = {

@@ -108,3 +108,9 @@ static_assert(sizeof(echinus_simulation_profile) == 96 && offsetof(echinus_simul
               offsetof(echinus_simulation_profile, truncated_count) == 72 &&
               offsetof(echinus_simulation_profile, measured_pair_count) == 80 &&
               offsetof(echinus_simulation_profile, squeezed_count) == 88);
+static_assert(sizeof(echinus_contact_point) == 112 && offsetof(echinus_contact_point, position) == 0 &&
+              offsetof(echinus_contact_point, normal) == 24 && offsetof(echinus_contact_point, gap) == 48 &&
+              offsetof(echinus_contact_point, normal_impulse) == 56 &&
+              offsetof(echinus_contact_point, friction_impulse) == 64 &&
+              offsetof(echinus_contact_point, collider) == 88 &&
+              offsetof(echinus_contact_point, particles) == 92);

@@ -1320,6 +1320,42 @@ ECHINUS_API echinus_status echinus_simulation_set_collider_cache(echinus_simulat
 ECHINUS_API echinus_status echinus_simulation_load_on(const echinus_simulation* simulation, size_t index,
                                                       double* force, double* torque);
 
+/// The next frames move a collider freely from its present velocities: a rigid body of uniform density, moved
+/// by gravity and by contact with the deformable. Needs an exact map of a closed mesh and
+/// ECHINUS_SOLVER_NEWTON.
+/// @param mass  kg, positive and finite
+/// @return ECHINUS_INVALID_OPTIONS; then nothing has changed
+ECHINUS_API echinus_status echinus_simulation_set_collider_free(echinus_simulation* simulation, size_t index,
+                                                                double mass);
+
+/// In place of the number of a collider or of a particle.
+#define ECHINUS_NONE UINT32_MAX
+
+/// A contact that pushed in the last frame: of a particle, an edge or a face of the deformable with a
+/// collider, or of two of its own.
+typedef struct echinus_contact_point {
+    double position[3];    ///< on the deformable, at the end of the frame; world coordinates
+    double normal[3];      ///< unit, towards the deformable; towards its first part where both are its own
+    double gap;            ///< at the end of the frame; positive
+    double normal_impulse; ///< on the deformable (its first part) along the normal in the frame, N s
+    double friction_impulse[3]; ///< the same across the normal, N s
+    uint32_t collider;          ///< ECHINUS_NONE: the contact is of the deformable with itself
+    /// Of the first part, and then of the second one if it is the deformable's own, too: a vertex and the
+    /// three of a face, or two and two of edges. ECHINUS_NONE where there are fewer.
+    uint32_t particles[4];
+} echinus_contact_point;
+
+/// Whether the frames that follow record the contacts that push; off at the beginning. Not part of a saved
+/// state.
+ECHINUS_API echinus_status echinus_simulation_record_contacts(echinus_simulation* simulation, int32_t is_on);
+
+/// The contacts that were recorded in the last frame. Their impulses divided by the time step sum to the load
+/// on each collider, except for the loads of attached particles and of truncated ones. None under
+/// ECHINUS_SOLVER_JAKOBSEN.
+/// @param points  out, echinus_contact_point
+ECHINUS_API echinus_status echinus_simulation_contact_points(const echinus_simulation* simulation,
+                                                             echinus_array** points);
+
 /// Gives a particle a velocity, from which the next frame goes on. A pinned particle stays.
 /// @param velocity  [3] finite, units per second
 ECHINUS_API echinus_status echinus_simulation_set_particle_velocity(echinus_simulation* simulation,
