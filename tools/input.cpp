@@ -63,5 +63,5 @@ void Input::fail(ErrorCode code, const std::string& finding) const {
 }
 
 void Input::require_good() const {
-    if (stream_.bad()) fail(ErrorCode::Unreadable, "cannot be read to its end");
+    if (stream_.bad()) fail(ErrorCode::Unreadable, "cannot be read to the end");
 }

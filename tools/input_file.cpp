@@ -22,8 +22,7 @@ void copy_standard_input(const fs::path& target) {
         if (total > echinus::kMostStreamBytes)
             input.fail(ErrorCode::Unreadable,
                        "has more than " + std::to_string(echinus::kMostStreamBytes) +
-                           " bytes, the most that are read from it; write them to a file first, if they have "
-                           "an end");
+                           " bytes, the limit for such input; write it to a file first");
         output.write(block.data(), byte_count);
     }
     output.commit();
@@ -60,7 +59,7 @@ void MeshArgument::add_format_option(Command command) {
 
 void MeshArgument::require_format() const {
     if (path == kStandardStream && format.empty()) {
-        throw WrongUse("--format", "needed for a mesh on standard input, such as --format obj");
+        throw WrongUse("--format", "is required for a mesh on standard input, for example --format obj");
     }
 }
 

@@ -8,7 +8,7 @@ namespace {
 void add_commands(Program& program) {
     program.add_version("echinus " ECHINUS_VERSION);
     const Command command = program.command();
-    command.require_command("A subcommand");
+    command.require_command("A command");
     add_mesh_command(command);
     add_info_command(command);
     add_build_command(command);
@@ -16,9 +16,10 @@ void add_commands(Program& program) {
     add_simulate_command(command);
     add_render_command(command);
     add_tetrahedralize_command(command);
-    command.footer("A file named - is standard input or standard output, except a scene.\n"
-                   "Exit status: 0 done, 1 failed, 2 wrong use; an error is one line on standard error.\n"
-                   "echinus COMMAND --help shows the options of a command and an example.");
+    command.footer(
+        "A file named - is standard input or standard output, except a scene.\n"
+        "Exit status: 0 success, 1 failure, 2 usage error; an error is one line on standard error.\n"
+        "echinus COMMAND --help shows the options of a command and an example.");
 }
 
 /// For one version only.

@@ -135,7 +135,7 @@ void flush_standard_output() {
 void require_another_file(const fs::path& source, const fs::path& target) {
     std::error_code not_there;
     if (fs::equivalent(source, target, not_there))
-        throw WrongUse(target.string(), "this file is read; give the result another name");
+        throw WrongUse(target.string(), "is an input file; give the result another name");
 }
 
 void require_ending(const fs::path& target, std::initializer_list<std::string_view> endings) {

@@ -36,12 +36,13 @@ int fail(const std::string& program, std::string_view sentence, int status) {
     return status;
 }
 
-int fail_wrong_use(const std::string& program, const std::string& sentence) {
-    return fail(program, sentence + "; see " + program + " --help", kWrongUse);
+int fail_wrong_use(const std::string& name, const std::optional<Program>& program,
+                   const std::string& sentence) {
+    return fail(name, sentence + "; see " + (program ? program->given_command() : name) + " --help",
+                kWrongUse);
 }
 
-/// The library ignores the name of an instruction set that it does not have; a user of the command line wants
-/// to know.
+/// The library ignores the name of an unsupported instruction set; the program reports it.
 void require_named_instruction_set() {
     const char* name = std::getenv("ECHINUS_INSTRUCTION_SET");
     if (name != nullptr && *name != '\0') echinus::use_instruction_set(name);
@@ -56,20 +57,21 @@ void warn(const std::string& sentence) {
 int run_program(const std::string& name, const std::string& description,
                 const std::function<void(Program&)>& set_up, int argc, char** argv) {
     clean_up_when_interrupted();
+    std::optional<Program> program;
     try {
         require_named_instruction_set();
-        Program program(name, description);
-        set_up(program);
-        if (const std::optional<std::string> text = program.run(argc, argv)) print(*text);
+        set_up(program.emplace(name, description));
+        if (const std::optional<std::string> text = program->run(argc, argv)) print(*text);
         flush_standard_output();
         return 0;
     } catch (const WrongUse& error) {
-        return fail_wrong_use(name, error.what());
+        return fail_wrong_use(name, program, error.what());
     } catch (const echinus::Error& error) {
-        if (error.code() == echinus::ErrorCode::InvalidOptions) return fail_wrong_use(name, error.what());
+        if (error.code() == echinus::ErrorCode::InvalidOptions)
+            return fail_wrong_use(name, program, error.what());
         return fail(name, error.what(), kFailed);
     } catch (const std::bad_alloc&) {
-        return fail(name, "out of memory: the input, or what was asked for, is too large for this machine",
+        return fail(name, "out of memory: the input or the requested result is too large for this machine",
                     kFailed);
     } catch (const std::exception& error) {
         return fail(name, error.what(), kFailed);

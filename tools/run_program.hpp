@@ -8,7 +8,7 @@
 /// What main() does in every program of the command line: parses the arguments, runs the actions that they
 /// name, and says on one line of standard error why it failed.
 /// @param set_up  adds the program's commands and options; may throw what actions throw
-/// @returns the exit status: 0 done, 1 failed, 2 wrong use
+/// @returns the exit status: 0 success, 1 failure, 2 usage error
 /// @pre the program has no other threads yet
 int run_program(const std::string& name, const std::string& description,
                 const std::function<void(Program&)>& set_up, int argc, char** argv);

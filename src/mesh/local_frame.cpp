@@ -55,10 +55,10 @@ void move_to_origin(const Vec3d& origin, TriangleMesh& mesh) {
 void require_no_origin(const Vec3d& origin, const std::string& what) {
     if (origin == Vec3d{}) return;
     throw Error(ErrorCode::InvalidMesh,
-                what + " stands around (" + number_text(origin.x) + ", " + number_text(origin.y) + ", " +
+                what + " is located around (" + number_text(origin.x) + ", " + number_text(origin.y) + ", " +
                     number_text(origin.z) +
-                    "), too far from 0 for the floats of a simulation; move its mesh, and all that stands "
-                    "there with it, to 0");
+                    "), too far from 0 for the floats of a simulation; move its mesh, and everything "
+                    "around it, to 0");
 }
 
 TriangleMesh local_mesh(std::span<const Vec3d> positions, std::vector<Triangle> faces) {

@@ -27,7 +27,7 @@ void require_numberable(std::size_t face_count, std::size_t vertex_count) {
         if (count > most)
             throw Error(ErrorCode::InvalidMesh, "the mesh has " + std::to_string(count) + what +
                                                     std::to_string(most) +
-                                                    " that can be numbered; take it apart");
+                                                    " that can be numbered; divide it");
     };
     require(face_count, kMostFaces, " faces, more than the ");
     require(vertex_count, 3 * kMostFaces, " vertices, more than the ");

@@ -60,7 +60,7 @@ constexpr KeyWithoutEffect kOfTheMaterialBefore[] = {
      "any more; write material.stretch_stiffness, material.shear_stiffness and material.bending_stiffness"},
 };
 constexpr KeyWithoutEffect kOfTheClothBefore[] = {
-    {"bending", "any more; the newton solver bends by angles, and jakobsen by sticks"},
+    {"bending", "any more; newton computes bending from angles, and jakobsen from distance constraints"},
 };
 
 /// Warns of those that are there.
@@ -519,7 +519,7 @@ void read_surfaces(JsonObject& root, Scene& scene) {
             root.refuse(has_particles_only              ? "solver"
                         : root.has("surface_collision") ? "surface_collision"
                                                         : "map",
-                        "such that surfaces collide, since a collider has a vertex cache");
+                        "set so that surfaces collide, since a collider has a vertex cache");
     if (options.untangle && !surfaces)
         root.refuse("untangle", "false, or \"surface_collision\" must be true");
 }
@@ -536,9 +536,9 @@ void read_solver(JsonObject& root, Scene& scene) {
     }
     if (solver >= kVerlet)
         scene.warnings.push_back(*root.ignore("solver",
-                                              "as \"verlet\" and \"xpbd\" exist no more, and newton is "
+                                              "as \"verlet\" and \"xpbd\" no longer exist, and newton is "
                                               "used; write \"newton\", or \"jakobsen\" for the "
-                                              "paper's sticks"));
+                                              "paper's solver"));
     read_solver_options(root, options);
     for (const SceneCollider& collider : scene.colliders)
         if (collider.mass && options.solver != SolverKind::Newton)
@@ -561,7 +561,8 @@ void read_teleports(JsonObject& root, Scene& scene) {
         object.read("deformable", teleport.deformable);
         object.finish();
         if (!teleport.deformable && teleport.colliders.empty())
-            object.refuse("deformable", "true, or \"colliders\" must name some: nothing goes elsewhere");
+            object.refuse("deformable",
+                          "true, or \"colliders\" must list some: otherwise nothing is teleported");
     }
 }
 

@@ -22,7 +22,7 @@ fs::path find(const std::string& name, std::span<const fs::path> folders, const 
         tried += (tried.empty() ? "" : ", ") + folder.string();
     }
     if (fs::path(name).is_absolute())
-        throw Error(ErrorCode::Unreadable, what + name + " is not there, or no file");
+        throw Error(ErrorCode::Unreadable, what + name + " does not exist, or is not a file");
     throw Error(ErrorCode::Unreadable, std::string(what) + name + " is in none of the folders " + tried +
                                            "; scripts/setup puts the models of the scenes into models/");
 }
@@ -108,7 +108,7 @@ Simulation make_simulation(const Scene& scene, std::span<const ColliderMap> maps
             throw Error(ErrorCode::InvalidOptions,
                         "collider " + std::to_string(c) + " has the vertex cache " +
                             scene.colliders[c].cache->name +
-                            ", which was not given; read it with read_vertex_cache(), or take it out of the "
+                            ", which was not given; read it with read_vertex_cache(), or remove it from the "
                             "scene");
     std::vector<Collider> colliders;
     for (std::size_t c = 0; c < maps.size(); ++c)

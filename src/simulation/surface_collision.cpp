@@ -128,7 +128,7 @@ SurfaceCollision::SurfaceCollision(std::vector<Vec3f> positions, std::vector<Tri
                                    const SurfaceCollisionOptions& options) {
     require_within("thickness", thickness, 0, kMostThickness);
     require_ranges(options);
-    require_option(!faces.empty(), "surfaces collide where there are faces; give those of the deformable");
+    require_option(!faces.empty(), "surface collision needs faces; pass those of the deformable");
     state_ = std::make_unique<State>(Simulation(deformable_of(std::move(positions), std::move(faces)),
                                                 at_rest(std::move(colliders)),
                                                 simulation_options(thickness, options)));

@@ -112,7 +112,7 @@ Embedding embed(const TetrahedralMesh& mesh, StridedSpan<const Vec3f> points, un
     for (std::size_t i = 0; i < points.size(); ++i)
         if (!is_finite(points[i]))
             throw Error(ErrorCode::InvalidMesh,
-                        "point " + std::to_string(i) + " of those to be embedded is not finite");
+                        "point " + std::to_string(i) + " to be embedded is not finite");
     const TetrahedronTree tree(mesh);
     Embedding embedding(points.size());
     parallel_for(points.size(), thread_count, [&](std::size_t begin, std::size_t end) {

@@ -33,8 +33,8 @@ void require_two_sides(const std::vector<FaceUse>& uses) {
                     ErrorCode::InvalidMesh,
                     "the tetrahedra " + std::to_string(uses[j - 1].tetrahedron) + " and " +
                         std::to_string(uses[i].tetrahedron) +
-                        " lie on the same side of a face of theirs, so they overlap; cut the body into "
-                        "tetrahedra anew");
+                        " lie on the same side of a common face, so they overlap; divide the body into "
+                        "tetrahedra again");
 }
 
 } // namespace

@@ -68,7 +68,7 @@ void add_options(Command command, Arguments& arguments) {
     command.add("--seed", &arguments.options.seed, "Of the random points").show_default();
     command.add("--threads", &arguments.options.thread_count, "0: all cores").show_default();
     command.add_flag("--json", arguments.json, "Print one JSON object");
-    command.footer("Exit status: 0 all holds, 1 something does not or an error, 2 wrong use.\n"
+    command.footer("Exit status: 0 all holds, 1 something does not or an error, 2 usage error.\n"
                    "Examples:\n  echinus-check horse.obj --points 1000000\n"
                    "  echinus-check --cloth out/horse --every 10");
 }

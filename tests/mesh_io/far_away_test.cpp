@@ -196,7 +196,7 @@ TEST_F(FarAwayFiles, AreNoModelsOfVertexCaches) {
     const fs::path file = write("cube.obj", vertex_lines("v ") + face_lines("f ", 1));
     fs::create_directories(path("frames"));
     fs::copy_file(file, path("frames") / "0.obj");
-    const std::string words = "stands around (448263, 5.41193e+06, 112.5)";
+    const std::string words = "is located around (448263, 5.41193e+06, 112.5)";
     expect_error(ErrorCode::InvalidMesh, words,
                  [&] { read_vertex_cache(path("frames"), read_mesh(file), 24); });
     TriangleMesh near = read_mesh(file);

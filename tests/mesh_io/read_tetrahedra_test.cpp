@@ -112,10 +112,10 @@ TEST_F(ReadTetrahedra, RefusesFlatOnesAndThoseThatAreFoldedOverOthers) {
     TetrahedralMesh folded = make_brick(2);
     folded.vertices[13] = {3.1F, 2.9F, 3.3F}; // the middle goes out through a corner
     expect_refused("folded.vtk", encode_vtk(folded), ErrorCode::InvalidMesh,
-                   "lie on the same side of a face");
+                   "lie on the same side of a common face");
     expect_refused("twice.msh",
                    with_replaced(sample("text_2.msh"), "4 4 2 1 1 11 21 31 41", "4 4 2 1 1 1 11 21 31"),
-                   ErrorCode::InvalidMesh, "lie on the same side of a face");
+                   ErrorCode::InvalidMesh, "lie on the same side of a common face");
 }
 
 TEST_F(ReadTetrahedra, NamesTheLineAndTheRemedyInText) {

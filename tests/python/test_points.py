@@ -237,5 +237,5 @@ def test_float32_says_how_coarse_it_is_there():
 
 def test_simulations_refuse_them():
     far = moved(ech.make_box(), PLACES["utm"])
-    with pytest.raises(ech.Error, match="stands around"):
+    with pytest.raises(ech.Error, match="is located around"):
         ech.Simulation(ech.make_cloth(), [ech.Collider(ech.ExactMap(far))])

@@ -291,7 +291,7 @@ TEST(SceneMeshCloth, IsRefusedByNameWhereItsMeshesDoNotFit) {
     expect_refusal(ErrorCode::InvalidMesh,
                    "s.obj: its rest mesh r.obj has other vertices or faces: 16 and 18",
                    R"("mesh": "s.obj", "rest_mesh": "r.obj")", {sheet, test::sheet_mesh(4, 4)});
-    expect_refusal(ErrorCode::InvalidOptions, "s.obj: a pin names vertex 25",
+    expect_refusal(ErrorCode::InvalidOptions, "s.obj: a pin refers to vertex 25",
                    R"("mesh": "s.obj", "pins": [25])", {sheet, {}});
     expect_refusal(ErrorCode::InvalidOptions, "s.obj: none of its vertices is in the box of cloth.pins",
                    R"("mesh": "s.obj", "pins": {"from": [2, 0, 0], "to": [3, 1, 1]})", {sheet, {}});

@@ -308,7 +308,7 @@ TEST(Scene, OfAnEarlierVersionIsReadWithAWarningForEachKeyThatHasNoEffectAnyMore
         {"iterations", "see newton_steps"},
         {"substeps", "leave it out"},
         {"multilevel", "leave it out"},
-        {"cloth.bending", "by angles"},
+        {"cloth.bending", "from angles"},
         {"material.structural", "write material.stretch_stiffness, in N/m"},
         {"material.shear", "write material.shear_stiffness, in N/m"},
         {"material.bending", "write material.bending_stiffness, in N m"},

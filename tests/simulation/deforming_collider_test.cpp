@@ -352,7 +352,7 @@ TEST(DeformingCollider, RefusesOtherTopologiesAndKeepsWhatItHas) {
     places[3].y = std::numeric_limits<float>::quiet_NaN();
     refuse("the place of vertex 3 is not finite", [&] { simulation.set_collider_vertices(0, places); });
     const auto samples = std::make_shared<std::vector<Vec3f>>(ball.vertices);
-    refuse("a cache has to be made of the same mesh",
+    refuse("a cache must belong to the same mesh",
            [&] { simulation.set_collider_cache(0, {.vertex_count = 7, .samples = samples}); });
     refuse("a positive time apart", [&] {
         simulation.set_collider_cache(

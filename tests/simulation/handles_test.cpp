@@ -121,7 +121,7 @@ TEST(Handles, AreRefusedByNameWhereTheyHoldWhatTheyCannot) {
     EXPECT_EQ(refusal([](Deformable&) {}), "");
     EXPECT_EQ(refusal([](Deformable& d) { d.handles.push_back({{999}}); }),
               "handle 1 of particle 999: the last one is 168");
-    EXPECT_EQ(refusal([](Deformable& d) { d.handles.push_back({}); }), "handle 1 leads no particles");
+    EXPECT_EQ(refusal([](Deformable& d) { d.handles.push_back({}); }), "handle 1 holds no particles");
     EXPECT_EQ(refusal([](Deformable& d) { d.handles.push_back({{3}}); }),
               "handle 1 of particle 3 is not its first; a particle has at most one");
     EXPECT_EQ(refusal([](Deformable& d) { d.inverse_masses[0] = 0; }),

@@ -264,12 +264,12 @@ TEST(MeshCloth, RefusesOptionsOutOfRangeByName) {
     const auto expect_option = [&](const std::string& words, const MeshClothOptions& options) {
         expect_refusal(words, sheet, options, ErrorCode::InvalidOptions);
     };
-    expect_option("a pin names vertex 9, but the cloth has only 9", {.pins = {9}});
-    expect_option("an attachment names vertex 10", {.attachments = {{10}}});
+    expect_option("a pin refers to vertex 9, but the cloth has only 9", {.pins = {9}});
+    expect_option("an attachment refers to vertex 10", {.attachments = {{10}}});
     expect_option("vertex 4 is both pinned", {.pins = {0, 4}, .attachments = {{4}}});
     expect_option("a thread ends at vertex 11", {.threads = {{0, 11}}});
     expect_option("the cloth's scale is 0; it must lie in", {.scale = 0});
-    expect_option("its rest shape 2; it needs as many", {.rest_vertices = {{}, {}}});
+    expect_option("its rest shape 2; it needs the same number", {.rest_vertices = {{}, {}}});
     expect_option("the cloth has the rotation", {.pose = {{2, 0, 0, 0}, {}}});
     expect_refusal("the thread from vertex 3 to 3 has no length", sheet, {.threads = {{3, 3}}});
     TriangleMesh flat_at_rest = sheet;
@@ -336,7 +336,7 @@ TEST(Attachments, AreRefusedByNameWhereTheyDoNotFit) {
                            [&] { Simulation(cloth, colliders, test::jakobsen()); });
     };
     const TriangleMesh sheet = test::translated(test::sheet_mesh(3, 3), {0, 0, 2});
-    expect_words("names collider 1 of 1", make_cloth(sheet, {.attachments = {{4, 1}}}));
+    expect_words("refers to collider 1 of 1", make_cloth(sheet, {.attachments = {{4, 1}}}));
     expect_words("particle 4 is not its first", make_cloth(sheet, {.attachments = {{4, 0}, {4, 0}}}));
     Deformable free = make_cloth(sheet, {});
     free.attachments = {{2, 0}};

@@ -122,7 +122,8 @@ TEST(SavedState, IsRefusedByAnotherSimulationInASentenceThatSaysWhatDiffers) {
     expect_refused("other options", [](KindOfSimulation& k) { k.options.friction = 0.1; });
     expect_refused("other options", [](KindOfSimulation& k) { k.options.self_collision = false; });
     expect_refused("another deformable", [](KindOfSimulation& k) { k.deformable.sticks.pop_back(); });
-    expect_refused("began elsewhere", [](KindOfSimulation& k) { k.deformable.positions[0].z += 0.01F; });
+    expect_refused("other initial positions",
+                   [](KindOfSimulation& k) { k.deformable.positions[0].z += 0.01F; });
     expect_refused("2 colliders, not 3", [](KindOfSimulation& k) {
         k.colliders.push_back(k.colliders[0]);
         k.colliders[2].pose.translation = {0, 0, -5};

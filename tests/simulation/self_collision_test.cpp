@@ -379,7 +379,7 @@ TEST(SelfCollision, NamesTheDistanceFromTheOriginWhereFloatsMakeTheFacesOfTheSta
     for (std::vector<Vec3f>* places : {&sheet.positions, &sheet.previous_positions})
         for (Vec3f& v : *places) v.x += 2e6F;
     expect_words(refusal_of(ErrorCode::InvalidOptions, [&] { Simulation(sheet, {}, kSelf); }),
-                 "from the origin, where floats tell its layers apart only from");
+                 "from the origin, where floats separate its layers only from a distance of");
 }
 
 TEST(SelfCollision, LeavesANetAloneThatABallOnlyPasses) {

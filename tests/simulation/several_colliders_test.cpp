@@ -310,10 +310,10 @@ TEST(CollisionFilter, IsRefusedWhereItNamesWhatIsNotThere) {
                      [&] { Simulation(sheet, table_and_floor(false), jakobsen()); });
     };
     expect_words("filter 0 of particle 9: the last particle is 8", {9, 0});
-    expect_words("filter 0 of particle 1 names collider 2 of 2, numbered from 0", {1, 2});
+    expect_words("filter 0 of particle 1 refers to collider 2 of 2, numbered from 0", {1, 2});
     Deformable sheet = sheet_at(0.1, 1, 3);
     sheet.filters.push_back({9, 0});
-    expect_error(ErrorCode::InvalidOptions, "a filter names particle 9", [&] {
+    expect_error(ErrorCode::InvalidOptions, "a filter refers to particle 9", [&] {
         combine(std::vector{sheet, sheet});
     });
 }

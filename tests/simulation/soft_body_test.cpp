@@ -90,11 +90,11 @@ TEST(SoftBody, IsNotCombinedWithAPartThatNamesParticlesOfTheNext) {
     };
     Deformable broken = sound;
     broken.faces.back()[2] = 8;
-    expect_refused("part 1 of what is combined: face 11 names particle 8; the last one is 7", broken);
+    expect_refused("part 1 of the combined parts: face 11 refers to particle 8; the last one is 7", broken);
     broken = sound;
     broken.attachments.push_back({9, 0});
-    expect_refused("part 1 of what is combined: an attachment names particle 9", broken);
-    expect_refused("part 1 of what is combined: the deformable has no particles", {});
+    expect_refused("part 1 of the combined parts: an attachment refers to particle 9", broken);
+    expect_refused("part 1 of the combined parts: the deformable has no particles", {});
 }
 
 TEST(SoftBody, OfImpossibleMeshesAndOptionsIsRefused) {
@@ -107,8 +107,8 @@ TEST(SoftBody, OfImpossibleMeshesAndOptionsIsRefused) {
     expect_refused("poisson_ratio is 0.5", {.poisson_ratio = 0.5});
     expect_refused("damping is -1", {.damping = -1});
     expect_refused("scale is 0", {.scale = 0});
-    expect_refused("a pin of the soft body names vertex 8", {.pins = {8}});
-    expect_refused("an attachment of the soft body names vertex 9", {.attachments = {{9, 0}}});
+    expect_refused("a pin of the soft body refers to vertex 8", {.pins = {8}});
+    expect_refused("an attachment of the soft body refers to vertex 9", {.attachments = {{9, 0}}});
     expect_refused("vertex 3 of the soft body is both pinned", {.pins = {3}, .attachments = {{3, 0}}});
 
     const auto expect_mesh_refused = [](const char* words, const TetrahedralMesh& mesh) {

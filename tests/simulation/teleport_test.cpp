@@ -123,7 +123,7 @@ TEST(Teleport, IsRefusedWhereTheClothWouldMeetAModelAndChangesNothing) {
     const std::uint64_t before = simulation.state_hash();
     const std::string sentence =
         refusal(simulation, {.motion = {{}, {0, 0, -2.8}}, .colliders = {1}, .deformable = false});
-    expect_words(sentence, "a teleport sets the deformable and collider 1 where");
+    expect_words(sentence, "a teleport moves the deformable and collider 1 to where");
     EXPECT_EQ(simulation.state_hash(), before);
     EXPECT_EQ(simulation.colliders()[1].pose.translation, (Vec3d{0, 0, 3}));
     // One that is to come is refused by the frame in which it comes, and then forgotten.

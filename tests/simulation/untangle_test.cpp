@@ -233,7 +233,7 @@ TEST(Untangle, MovesNoPinnedParticleAndNamesWhatThatLeaves) {
     EXPECT_EQ(Simulation(sheet, ball, kUntangled).positions()[0], sheet.positions[0]);
     const std::size_t middle = 21 * 21 / 2;
     sheet.inverse_masses[middle] = 0;
-    expect_error(ErrorCode::InvalidOptions, "that untangle could not part: face ",
+    expect_error(ErrorCode::InvalidOptions, "that untangle could not separate: face ",
                  [&] { Simulation(sheet, ball, kUntangled); });
     Deformable inside = sheet_at(0.1, 0.2, 5);
     inside.inverse_masses.assign(25, 0);

@@ -81,7 +81,7 @@ TEST(SimulationSetUp, RefusesAColliderWhoseScaleIsZeroOrNoNumber) {
 TEST(SimulationSetUp, RefusesWhatStandsTooFarAwayForFloats) {
     TriangleMesh box = make_box({1, 1, 1});
     box.origin = {448262, 5411932, 112};
-    const std::string words = " stands around (448262, 5.41193e+06, 112), too far from 0";
+    const std::string words = " is located around (448262, 5.41193e+06, 112), too far from 0";
     for (const ColliderMap& map : {ColliderMap(ExactMap::build(box)), ColliderMap(DistanceMap::build(box))}) {
         const Collider collider{.map = map, .name = "the house"};
         expect_error(ErrorCode::InvalidMesh, "the house" + words, [&] {
@@ -125,7 +125,8 @@ TEST(SimulationSetUp, RefusesTheExactMapOfAnOpenMeshUnlessItIsAllowed) {
     TriangleMesh open = make_box({1, 1, 1});
     open.faces.pop_back();
     const std::vector<Collider> colliders{{.map = ExactMap::build(open)}};
-    expect_error(ErrorCode::InvalidOptions, "collider 0 has the exact map of an open mesh, with 3 edges",
+    expect_error(ErrorCode::InvalidOptions,
+                 "collider 0 has the exact map of an open mesh, with 3 border edges",
                  [&] { Simulation(make_cloth({}), colliders, {}); });
     EXPECT_NO_THROW(Simulation(make_cloth({}), colliders, {.allow_open_colliders = true}));
     EXPECT_NO_THROW(Simulation(make_cloth({}), {{.map = DistanceMap::build(open)}}, {}));
@@ -153,7 +154,7 @@ TEST(SimulationSetUp, NamesTheParticleStickOrFaceAtFault) {
     expect_words(refusal([](Deformable& d, auto&) { d.sticks[3].a = d.sticks[3].b; }), "stick 3");
     expect_words(refusal([](Deformable& d, auto&) { d.sticks[1].rest_length = float(kNaNOption); }),
                  "stick 1");
-    expect_words(refusal([](Deformable& d, auto&) { d.faces[5][2] = 9; }), "face 5 names particle 9");
+    expect_words(refusal([](Deformable& d, auto&) { d.faces[5][2] = 9; }), "face 5 refers to particle 9");
     expect_words(refusal([](Deformable& d, auto&) { d.inverse_masses.pop_back(); }), "8 inverse masses");
     expect_words(refusal([](Deformable& d, auto&) { d.positions[7].y = -1.1e15F; }),
                  "particle 7 begins farther than 1e15");
@@ -188,7 +189,8 @@ TEST(SimulationSetUp, NamesTheFacesWithWhichADeformableBeginsIntersecting) {
     const std::vector<FacePair> pairs = intersecting_pairs({wide.positions, wide.faces}, raised);
     expect_error(ErrorCode::InvalidOptions,
                  "begins intersecting collider 0 in " + std::to_string(pairs.size()) + " pairs: face " +
-                     std::to_string(pairs[0].a) + " and its face " + std::to_string(pairs[0].b) + ", face ",
+                     std::to_string(pairs[0].a) + " of the deformable and face " +
+                     std::to_string(pairs[0].b) + " of collider 0, face ",
                  [&] { Simulation(wide, box, surfaces); });
     expect_error(ErrorCode::InvalidOptions, "25 particles begin inside collider 0; the first is particle 0",
                  [&] { Simulation(sheet_at(2.2, 0.5, 5), box, surfaces); });
@@ -196,7 +198,7 @@ TEST(SimulationSetUp, NamesTheFacesWithWhichADeformableBeginsIntersecting) {
     thread.positions = thread.previous_positions = {{0, 0, 2.2F}, {0, 0, 3}};
     thread.inverse_masses = {1, 1};
     thread.sticks = {{0, 1, 0.8F, StickKind::Structural}};
-    expect_error(ErrorCode::InvalidOptions, "the edge from particle 0 to 1 and its face ",
+    expect_error(ErrorCode::InvalidOptions, "the edge from particle 0 to 1 of the deformable and face ",
                  [&] { Simulation(thread, box, surfaces); });
     // Particles alone may begin anywhere.
     EXPECT_NO_THROW(Simulation(wide, box, test::jakobsen()));

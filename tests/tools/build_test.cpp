@@ -48,7 +48,7 @@ TEST_F(BuildCommand, PrintsWhatItBuilt) {
 }
 
 TEST_F(BuildCommand, LeavesTheMeshAloneWhenItsNameIsGivenForTheMap) {
-    expect_failure(2, "box.obj: this file is read", small({"-o", "./box.obj"}));
+    expect_failure(2, "box.obj: is an input file", small({"-o", "./box.obj"}));
     EXPECT_EQ(content("box.obj"), box_text());
 }
 

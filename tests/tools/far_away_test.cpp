@@ -113,7 +113,7 @@ TEST_F(FarAwayCommands, SayByHowMuchFloatsRound) {
     const json summary =
         json::parse(expect_success({"query", "cube.ech", "floats.npy", "-o", "answers.csv", "--json"}));
     EXPECT_EQ(summary["points_step"], 0.5);
-    EXPECT_NE(expect_success({"query", "cube.ech", "floats.npy", "-o", "answers.csv"}).find("step by 0.5"),
+    EXPECT_NE(expect_success({"query", "cube.ech", "floats.npy", "-o", "answers.csv"}).find("spacing is 0.5"),
               std::string::npos);
     EXPECT_FALSE(
         json::parse(expect_success({"query", "cube.ech", "points.csv", "-o", "answers.csv", "--json"}))
@@ -122,7 +122,7 @@ TEST_F(FarAwayCommands, SayByHowMuchFloatsRound) {
     // As floats have it there.
     write("rounded.obj", cube({"448262.25", "448263.25"}, {"5411932.5", "5411933.5"}, {"112.25", "113.125"}));
     EXPECT_EQ(json::parse(expect_success({"info", "rounded.obj", "--json"}))["rounding_step"], 0.5);
-    EXPECT_NE(expect_success({"info", "rounded.obj"}).find("step by 0.5"), std::string::npos);
+    EXPECT_NE(expect_success({"info", "rounded.obj"}).find("spacing is 0.5"), std::string::npos);
     const json built = json::parse(expect_success({"build", "rounded.obj", "-o", "rounded.ech", "--json"}));
     EXPECT_EQ(built["rounding_step"], 0.5);
 }
@@ -167,7 +167,7 @@ TEST_F(FarAwayCommands, RepairFillAndDraw) {
 TEST_F(FarAwayCommands, RefuseToSimulateByName) {
     write("scene.json", R"({"model": "cube.obj", "cloth": {"particles": [4, 4], "size": [2, 2],
                             "position": [0, 0, 3], "thickness": 0.01}})");
-    expect_failure(1, "cube.obj stands around (448263, 5.41193e+06, 112.5)",
+    expect_failure(1, "cube.obj is located around (448263, 5.41193e+06, 112.5)",
                    {"simulate", "scene.json", "-o", "run"});
 }
 

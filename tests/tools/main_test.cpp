@@ -16,35 +16,36 @@ TEST_F(MainCommand, PrintsItsVersion) {
 }
 
 TEST_F(MainCommand, TellsTheExitStatusesInItsHelp) {
-    EXPECT_NE(expect_success({"--help"}).find("Exit status: 0 done, 1 failed, 2 wrong use"),
+    EXPECT_NE(expect_success({"--help"}).find("Exit status: 0 success, 1 failure, 2 usage error"),
               std::string::npos);
 }
 
 TEST_F(MainCommand, RefusesAMissingOrUnknownCommandAsWrongUse) {
-    expect_failure(2, "subcommand", {});
-    expect_failure(2, "'frobnicate' is no command; there are mesh, info, build, query",
+    expect_failure(2, "A command is required", {});
+    expect_failure(2, "there is no command 'frobnicate'; the commands are mesh, info, build, query",
                    {"frobnicate", "x.obj"});
-    expect_failure(2, "'frobnicate' is no command; there are mesh, map, moment, sheet",
+    expect_failure(2, "there is no command 'frobnicate'; the commands are mesh, map, moment, sheet",
                    {"render", "frobnicate"});
-    expect_failure(2, "--frobnicate is no option here;", {"--frobnicate"});
+    expect_failure(2, "there is no option --frobnicate;", {"--frobnicate"});
 }
 
 TEST_F(MainCommand, NamesWhatIsNearestToAMistypedWord) {
-    expect_failure(2, "'simulat' is no command; the nearest is simulate; there are mesh",
+    expect_failure(2, "there is no command 'simulat'; the nearest is simulate; the commands are mesh",
                    {"simulat", "x.json"});
-    expect_failure(2, "'shet' is no command; the nearest is sheet", {"render", "shet"});
-    expect_failure(2, "--verson is no option here; the nearest is --version", {"--verson"});
+    expect_failure(2, "there is no command 'shet'; the nearest is sheet", {"render", "shet"});
+    expect_failure(2, "there is no option --verson; the nearest is --version", {"--verson"});
     // Also where something else is missing.
-    expect_failure(2, "--direction is no option here; the nearest is --directions",
+    expect_failure(2, "there is no option --direction; the nearest is --directions",
                    {"build", "x.obj", "--direction", "200"});
-    expect_failure(2, "--outpt is no option here; the nearest is --output", {"build", "x.obj", "--outpt=y"});
+    expect_failure(2, "there is no option --outpt; the nearest is --output", {"build", "x.obj", "--outpt=y"});
 }
 
 TEST_F(MainCommand, NamesTheOptionWhoseValueItCannotTake) {
-    expect_failure(2, "--directions: '=' is not what it takes; write it as --directions VALUE or",
+    expect_failure(2, "--directions: '=' is not a valid value; write it as --directions VALUE or",
                    {"build", "x.obj", "--directions", "=", "200", "-o", "y"});
-    expect_failure(2, "--directions: 'many' is not what it takes",
-                   {"build", "x.obj", "--directions", "many", "-o", "y"});
+    expect_failure(
+        2, "--directions: 'many' is not a valid value; expected COUNTxCOUNT; see echinus build --help",
+        {"build", "x.obj", "--directions", "many", "-o", "y"});
 }
 
 TEST_F(MainCommand, TellsWhereTheComparisonWentWhateverItsArguments) {
@@ -222,7 +223,7 @@ TEST_F(MeshCommand, ShowsAnExampleInTheHelpOfEachShape) {
 }
 
 TEST_F(MeshCommand, RefusesWrongUse) {
-    expect_failure(2, "subcommand", {"mesh"});
+    expect_failure(2, "A command (torus, sphere, box or repair)", {"mesh"});
     expect_failure(2, "cone", {"mesh", "cone", "-o", "a.obj"});
     expect_failure(2, "--output", {"mesh", "torus"});
     expect_failure(2, "--segments", {"mesh", "torus", "--segments", "60", "-o", "a.obj"});
@@ -271,7 +272,7 @@ TEST_F(MeshCommand, RefusesAnImpossibleRepair) {
     expect_failure(2, "--close-holes", repair("--close-holes", "-1"));
     for (const char* wrong : {"0", "-1", "nan", "inf", "thick", ""})
         expect_failure(2, "--thicken", repair("--thicken", wrong));
-    expect_failure(2, "this file is read",
+    expect_failure(2, "is an input file",
                    {"mesh", "repair", "box.obj", "--drop-inner-faces", "-o", "./box.obj"});
     EXPECT_FALSE(std::filesystem::exists(path("out.obj")));
 }

@@ -153,7 +153,7 @@ TEST_F(Points, AreRefusedWhenTheFileIsShorterOrLongerThanPromised) {
         for (std::size_t size = 0; size < file.size(); ++size) {
             EXPECT_THROW(read_npy(file.substr(0, size)), Error) << size << " bytes";
         }
-        expect_refusal("p.npy", file + "x", ErrorCode::Damaged, "goes on behind them");
+        expect_refusal("p.npy", file + "x", ErrorCode::Damaged, "continues after them");
     }
 }
 
@@ -216,11 +216,11 @@ TEST_F(Points, AreRefusedWithTheNumberOfTheLine) {
     refuse("1,2,3abc\n", "line 1");
     refuse("1,2,\n", "line 1");
     refuse("1;2;3\n",
-           "line 1 is '1;2;3' and not three numbers x,y,z; separate them by commas, not by semicolons");
+           "line 1 is '1;2;3', not three numbers x,y,z; separate them by commas, not by semicolons");
     refuse("1,5;2,5;3,5\n", "separate them by commas, not by semicolons, and write a decimal point");
     refuse("1 2 3\n", "separate them by commas, not by blanks");
     refuse("1\t2 \t3\n", "separate them by commas, not by tabs");
-    refuse("1,2,3,4\n", "and not three numbers x,y,z; it has 4 columns");
+    refuse("1,2,3,4\n", "not three numbers x,y,z; it has 4 columns");
     expect_refusal("p.csv",
                    std::string("\xff\xfe"
                                "1\0,\0",

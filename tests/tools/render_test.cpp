@@ -88,7 +88,7 @@ TEST_F(RenderCommand, DrawsTheSamePictureAgainAndToStandardOutput) {
 }
 
 TEST_F(RenderCommand, RefusesToWriteAPngUnderTheEndingOfAnotherFormat) {
-    expect_failure(2, "ends in .jpg, and what is written is png; name it x.png",
+    expect_failure(2, "ends in .jpg, but the output is png; name it x.png",
                    {"render", "mesh", "torus.obj", "-o", "x.jpg"});
     EXPECT_FALSE(std::filesystem::exists("x.jpg"));
 }
@@ -111,7 +111,7 @@ TEST_F(RenderCommand, RefusesAMapOfAnotherMesh) {
     write("ball.obj", obj_text(echinus::make_sphere(1, 12, 6)));
     for (const char* kind : {"exact", "distance"}) {
         expect_success({"build", "box.obj", "--kind", kind, "-o", "box.ech"});
-        expect_failure(1, "ball.obj: not the mesh that box.ech was built from",
+        expect_failure(1, "ball.obj: not the mesh from which box.ech was built",
                        render({"map", "box.ech", "ball.obj", "-o", "map.png"}));
     }
 }
@@ -192,7 +192,7 @@ TEST_F(RenderCommand, RefusesOptionsThatMakeNoSense) {
     refuses("--up", {"--up", "w"});
     refuses("wire", {"--wire", "-1"});
     expect_failure(2, "MESH", {"render", "mesh", "-o", "p.png"});
-    expect_failure(2, "subcommand", {"render"});
+    expect_failure(2, "A command (mesh, map, moment or sheet) is required", {"render"});
     for (const char* wrong : {"0,0,0", "0,0,0,-1", "nan,0,0,1", "0,0,0,inf"})
         expect_failure(2, "--close-up", render({"moment", "run", "-o", "p.png", "--close-up", wrong}));
     expect_failure(2, "frame 7", render({"moment", "run", "-o", "p.png", "--frame", "7"}));

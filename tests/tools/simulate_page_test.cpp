@@ -192,7 +192,7 @@ TEST_F(SimulatePage, EndsAtTheFrameLimitHoweverFewOfTheFramesItHas) {
 }
 
 TEST_F(SimulatePage, LeavesTheSceneAloneWhenItsNameIsGivenForThePage) {
-    expect_failure(2, "scene.json: this file is read",
+    expect_failure(2, "scene.json: is an input file",
                    {"simulate", "scene.json", "--html", "./scene.json", "--player", "player.html"});
     EXPECT_EQ(content("scene.json"), kFallingSheet);
 }
@@ -297,7 +297,7 @@ TEST_F(SimulatePage, SaysHowToGetAPlayer) {
 
 TEST_F(SimulatePage, RefusesAPlayerWithoutItsPlaceOrWithTwo) {
     write("player.html", "<!doctype html>\n");
-    expect_failure(1, "player.html: is no player", arguments("scene.json"));
+    expect_failure(1, "player.html: is not a player", arguments("scene.json"));
     write("player.html", "<!-- recording --><!-- recording -->");
     expect_failure(1, "<!-- recording --> once", arguments("scene.json"));
 }

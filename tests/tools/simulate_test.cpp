@@ -176,7 +176,7 @@ TEST_F(SimulateCommand, GoesOnFromASavedStateToTheSameEnd) {
     EXPECT_EQ(rest.at("state_hash"), whole.at("state_hash"));
     EXPECT_EQ(rest.at("frames"), 6);
     write("other.json", R"({"model": {"box": {}}, "cloth": {"size": [1, 1], "position": [0, 0, 2]}})");
-    expect_failure(1, "middle.state is of a simulation with another deformable",
+    expect_failure(1, "middle.state belongs to a simulation with another deformable",
                    {"simulate", "other.json", "-o", "run", "--from-state", "middle.state"});
 }
 
@@ -185,7 +185,9 @@ TEST_F(SimulateCommand, RefusesAStateThatIsNotBeforeTheLastFrame) {
     simulate("scene.json", {"--frames", "4", "--save-state", "middle.state"});
     for (const char* frames : {"3", "4"})
         expect_failure(
-            2, "--from-state: middle.state is of frame 4, and the run ends at frame " + std::string(frames),
+            2,
+            "--from-state: middle.state was saved after frame 4, and the run ends at frame " +
+                std::string(frames),
             {"simulate", "scene.json", "-o", "none", "--frames", frames, "--from-state", "middle.state"});
     EXPECT_FALSE(fs::exists(path("none")));
 }
@@ -370,7 +372,7 @@ TEST_F(SimulateCommand, NamesTheMeshOfAClothAndTheFaceAtFault) {
     write("scene.json", R"({"model": {"box": {}}, "cloth": {"mesh": "nowhere.obj"}})");
     expect_failure(1, "scene.json: the mesh nowhere.obj is in none", {"simulate", "scene.json", "-o", "run"});
     write("scene.json", R"({"model": {"box": {}}, "cloth": {"mesh": {"box": {}}, "pins": [8]}})");
-    expect_failure(1, "scene.json: cloth.mesh: a pin names vertex 8",
+    expect_failure(1, "scene.json: cloth.mesh: a pin refers to vertex 8",
                    {"simulate", "scene.json", "-o", "run"});
 }
 
@@ -530,8 +532,7 @@ TEST_F(SimulateCommand, DeformsAColliderByACacheAndSavesIt) {
     expect_success(
         {"render", "moment", "run", "-o", "end.png", "--width", "40", "--height", "30", "--samples", "1"});
 
-    expect_failure(2, "cannot show a collider that deforms",
-                   {"simulate", "scene.json", "--html", "page.html"});
+    expect_failure(2, "cannot show a deforming collider", {"simulate", "scene.json", "--html", "page.html"});
     write("wave.pc2", waving_box({{0, 0, 0}, {1, 0, 0}}, 20));
     expect_failure(1, "wave.pc2: has 2 points, but the model has 8 vertices",
                    {"simulate", "scene.json", "-o", "other"});

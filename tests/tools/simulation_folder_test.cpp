@@ -210,7 +210,7 @@ TEST_F(SimulationFolderTest, SaysWhatIsWrongWithAReport) {
     wrong("-9.81", "\"down\"", "gravity");
     wrong("\"frames_to_rest\": 9", "\"frames_to_rest\": \"soon\"", "frames_to_rest");
     wrong("\"collider.obj\"", "7", "mesh");
-    wrong("\"collider.obj\"", "\"collider.obj\", \"faces\": 11", "12 faces, not as many");
+    wrong("\"collider.obj\"", "\"collider.obj\", \"faces\": 11", "12 faces, which differs from");
     wrong("[0, 0, 0, 1]", "[0, 0, 0, 0]", "rotation");
     wrong("[0, 0, 0, 1]", "[0, 0, 1]", "rotation");
     wrong("\"frame\": 4", "\"frame\": 0", "ascend");

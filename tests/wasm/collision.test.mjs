@@ -146,7 +146,7 @@ describe('A collision', () => {
         assert.match(refusal({ thickness: undefined }).message, /thickness is undefined/);
         assert.match(refusal({ positions: [1, 2] }).message, /three numbers for each vertex/);
         assert.match(refusal({ positions: [] }).message, /no particles/);
-        assert.match(refusal({ faces: [0, 1, 2], surfaces: true }).message, /names particle 1/);
+        assert.match(refusal({ faces: [0, 1, 2], surfaces: true }).message, /refers to particle 1/);
         assert.match(refusal({ selfCollision: true }).message, /needs surfaces/);
         assert.match(refusal({ surfaces: true }).message, /give the faces/);
         const collision = echinus.makeCollision(good);

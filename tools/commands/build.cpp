@@ -76,9 +76,9 @@ void require_solid(const MeshReport& report, const TriangleMesh& mesh, const Bui
     if (report.closed && std::fabs(report.signed_volume) <= kRounding * radius * radius * radius && !exact)
         throw Error(ErrorCode::InvalidMesh,
                     name + ": the mesh encloses no volume; it is flat, or so far from the origin that its "
-                           "vertices round to one place: move it to the origin");
+                           "vertices round to one point: move it to the origin");
     if (report.closed && report.signed_volume < 0 && !exact)
-        throw Error(ErrorCode::InvalidMesh, name + ": the mesh is inside out, its faces turn clockwise seen "
+        throw Error(ErrorCode::InvalidMesh, name + ": the mesh is inside out: its faces are clockwise seen "
                                                    "from outside; mend it with --repair");
     if (report.closed || arguments.allow_open) return;
     throw Error(
@@ -140,7 +140,7 @@ AnyMap build_kind(const TriangleMesh& mesh, const BuildArguments& arguments) {
             throw Error(
                 ErrorCode::InvalidMesh,
                 "the mesh encloses nothing: it is flat, or its parts cancel each other, or it is so far from "
-                "the origin that its vertices round to one place; build it all the same with --allow-open");
+                "the origin that its vertices round to one point; build it anyway with --allow-open");
         return map;
     }
     DistanceMap map = DistanceMap::build(mesh, distance_options_of(arguments));
@@ -148,7 +148,7 @@ AnyMap build_kind(const TriangleMesh& mesh, const BuildArguments& arguments) {
         throw Error(
             ErrorCode::InvalidMesh,
             "no ray from the centre meets the mesh; it is too thin for so few directions, or so far from the "
-            "origin that its vertices round to a few places");
+            "origin that its vertices round to a few points");
     return map;
 }
 
@@ -189,7 +189,8 @@ void print_result(const MapDescription& description, const BuiltMap& built, cons
     } else if (arguments.target != kStandardStream) {
         print(to_text(description, arguments.target.string()));
         if (arguments.repair.given()) print("\nRepair: " + to_text(built.repairs) + ".\n");
-        if (built.inside_out) print("\nThe mesh is inside out. What it encloses is inside all the same.\n");
+        if (built.inside_out)
+            print("\nThe mesh is inside out. The enclosed region counts as inside all the same.\n");
         if (built.rounding_step > 0) print("\nRounding: " + rounding_text(built.rounding_step) + ".\n");
     }
 }
@@ -212,20 +213,20 @@ void add_exact_options(Command command, BuildArguments& arguments) {
     arguments.exact_only = {
         command
             .add("--cells-per-octant", &arguments.cells_per_octant,
-                 "Cells in each eighth of all directions, rounded down to a square number; by the "
-                 "number of faces if not given")
+                 "Cells in each octant of directions, rounded down to a square number; by default "
+                 "chosen by the number of faces")
             .range(1U, kMostCells)
             .type_name("COUNT"),
         command
             .add_byte_count(
                 "--budget", arguments.exact.byte_budget,
-                "The most bytes of the map, as 300KB (units B, KB, MB, GB, KiB, MiB, GiB): as many "
-                "cells as keep within. Without it and --cells-per-octant at most 512 B a face and "
+                "Largest size of the map, such as 300KB (units B, KB, MB, GB, KiB, MiB, GiB): the map gets "
+                "as many cells as fit. By default, without --cells-per-octant, 512 B per face plus "
                 "64 KiB")
             .excludes("--cells-per-octant"),
         add_choice<InsideRule>(command, "--rule", arguments.exact.rule,
                                {{"nonzero", InsideRule::Nonzero}, {"parity", InsideRule::Parity}},
-                               "What counts as inside where parts of the mesh overlap")};
+                               "The inside where parts of the mesh overlap")};
 }
 
 void add_distance_options(Command command, BuildArguments& arguments) {
@@ -236,9 +237,9 @@ void add_distance_options(Command command, BuildArguments& arguments) {
          {"octahedral", DirectionGrid::Octahedral},
          {"cube", DirectionGrid::Cube},
          {"ellipsoidal", DirectionGrid::Ellipsoidal}},
-        "How to divide the directions: by longitude and colatitude, as the paper does; the sides of an "
-        "octahedron, which keeps flat faces flat; the sides of a cube, evenly by angle; or by longitude and "
-        "colatitude of an ellipsoid as long and as thin as the mesh");
+        "Grid of directions: longitude and colatitude, as in the paper; the faces of an "
+        "octahedron, which keeps flat faces flat; the faces of a cube, evenly by angle; or longitude and "
+        "colatitude of an ellipsoid with the proportions of the mesh");
     const Option directions =
         command
             .add_numbers("--directions", 'x', {&options.longitude_count, &options.colatitude_count},
@@ -248,8 +249,8 @@ void add_distance_options(Command command, BuildArguments& arguments) {
     const Option divisions =
         command
             .add("--divisions", &options.divisions,
-                 "Into how many parts to cut each edge of the octahedron or the cube; 100 or 81 make "
-                 "as many bytes as 200x200 directions")
+                 "Number of parts of each edge of the octahedron or cube; 100 or 81 take as many "
+                 "bytes as 200x200 directions")
             .range(DistanceMapOptions::kMinDivisions, DistanceMapOptions::kMaxDivisions)
             .type_name("COUNT")
             .show_default();
@@ -267,10 +268,10 @@ void add_distance_options(Command command, BuildArguments& arguments) {
                                      {{"signed", VertexCorrection::Signed},
                                       {"paper", VertexCorrection::Paper},
                                       {"none", VertexCorrection::None}},
-                                     "What to do about vertices between the samples"),
+                                     "Correction for vertices between the samples"),
         add_choice<EntryFormat>(command, "--entries", options.entry_format,
                                 {{"float32", EntryFormat::Float32}, {"unorm16", EntryFormat::Unorm16}},
-                                "How to store a distance")};
+                                "Format of a stored distance")};
 }
 
 void add_options(Command command, BuildArguments& arguments) {
@@ -280,21 +281,23 @@ void add_options(Command command, BuildArguments& arguments) {
     command.add("-o,--output", &arguments.target, "Map file to write, or -").required().type_name("MAP");
     add_choice<MapKind>(command, "--kind", arguments.kind,
                         {{"exact", MapKind::Exact}, {"distance", MapKind::Distance}}, "Kind of map");
-    add_choice<CentreChoice>(command, "--centre", arguments.centre,
-                             {{"sphere", CentreChoice::BoundingSphere}, {"search", CentreChoice::Search}},
-                             "Where the rays start: the bounding sphere's centre, or the place that promises "
-                             "the fewest tests of an exact map, the fewest wrong answers of a distance map");
+    add_choice<CentreChoice>(
+        command, "--centre", arguments.centre,
+        {{"sphere", CentreChoice::BoundingSphere}, {"search", CentreChoice::Search}},
+        "Origin of the rays: the centre of the bounding sphere, or the point with the fewest expected "
+        "tests (exact map) or wrong answers (distance map)");
     command.add("--threads", &arguments.thread_count, "Threads to build on; 0: all cores")
         .range(0, 1024)
         .type_name("COUNT")
         .show_default();
-    command.add_flag("--repair", arguments.repair.repair,
-                     "Mend the mesh first, as far as that needs no guess: close seams, drop duplicate faces, "
-                     "doubled patches and loose slivers, turn faces and inside-out parts");
+    command.add_flag(
+        "--repair", arguments.repair.repair,
+        "Repair the mesh first, as far as that needs no guess: close seams, drop duplicate faces, "
+        "doubled patches and loose slivers, flip faces and inside-out parts");
     add_solid_options(command, arguments.repair);
     command.add_flag("--allow-open", arguments.allow_open,
-                     "Build also from a mesh that is not closed: near its holes answers of an exact map are "
-                     "not certain, behind them those of a distance map are wrong");
+                     "Accept a mesh that is not closed: near its holes the answers of an exact map are "
+                     "not certain, and behind them those of a distance map are wrong");
     arguments.mesh.add_format_option(command);
     command.add_flag("--json", arguments.json, "Print one JSON object");
     add_exact_options(command.add_group("Exact maps"), arguments);

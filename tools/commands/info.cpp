@@ -66,7 +66,7 @@ void show(const InfoArguments& arguments) {
 } // namespace
 
 void add_info_command(Command program) {
-    Command command = program.add_command("info", "Show what a mesh or a map is like");
+    Command command = program.add_command("info", "Print the properties of a mesh or a map");
     const auto arguments = std::make_shared<InfoArguments>();
     command.add("FILE", &arguments->file.path, "Mesh or map file, or -").required().type_name("");
     arguments->file.add_format_option(command);

@@ -171,8 +171,8 @@ void add_own_rows(Table& table, const ExactMap& map) {
               fmt::format("{:.1f} faces for a particle on the surface", statistics.expected_tests));
     table.add("certain",
               view.border.empty()
-                  ? "everywhere, as the surface is closed on the lattice"
-                  : fmt::format("{:.3f} % of the bounding sphere; places that are not lie in {:.3f} % of the "
+                  ? "everywhere, since the surface is closed on the lattice"
+                  : fmt::format("{:.3f} % of the bounding sphere; uncertain places are in {:.3f} % of the "
                                 "directions; {} border edges",
                                 statistics.certain_share * 100, statistics.uncertain_directions * 100,
                                 view.border.size()));
@@ -228,7 +228,7 @@ std::string text_about(const MapDescription& description, const std::string& tit
     table.add("centre inside", yes_or_no(is_centre_inside(map)));
     add_own_rows(table, map);
     table.add("bytes of the file", std::to_string(description.file_bytes));
-    table.add("build time", build_ms ? fmt::format("{:.1f} ms", *build_ms) : "not noted in the file");
+    table.add("build time", build_ms ? fmt::format("{:.1f} ms", *build_ms) : "not recorded in the file");
     return table.text() + own_text(map);
 }
 

@@ -66,7 +66,7 @@ void add_sphere(Command mesh) {
     auto options = std::make_shared<SphereOptions>();
     Command sphere = add_shape(mesh, "sphere", "A sphere with its poles on the z axis",
                                "--radius 1 --segments 60x30 -o sphere.ply", options->target);
-    sphere.add("--radius", &options->radius, "From the centre to each vertex").show_default();
+    sphere.add("--radius", &options->radius, "Distance of the vertices from the centre").show_default();
     sphere
         .add_numbers("--segments", 'x', {&options->meridians, &options->parallels},
                      "Meridians x rows of faces from pole to pole")
@@ -85,7 +85,7 @@ struct Box {
 
 void add_box(Command mesh) {
     auto options = std::make_shared<Box>();
-    Command box = add_shape(mesh, "box", "A box along the axes", "--size 1x1x1 --segments 4 -o box.stl",
+    Command box = add_shape(mesh, "box", "An axis-aligned box", "--size 1x1x1 --segments 4 -o box.stl",
                             options->target);
     box.add_numbers("--size", 'x', {&options->size.x, &options->size.y, &options->size.z},
                     "Lengths along x, y and z")
@@ -123,8 +123,7 @@ void mend(Mending arguments) {
 
 void add_repair(Command mesh) {
     auto arguments = std::make_shared<Mending>();
-    Command command =
-        mesh.add_command("repair", "A mesh without its faults, made solid where that is asked for");
+    Command command = mesh.add_command("repair", "Write a repaired mesh, made solid on request");
     command.add("MESH", &arguments->mesh.path, "Mesh file (OBJ, PLY, STL, OFF, glTF, GLB, 3DS), or -")
         .required()
         .type_name("");
@@ -134,7 +133,7 @@ void add_repair(Command mesh) {
         .required();
     add_solid_options(command, arguments->repair);
     command.add_flag("--keep-faults", arguments->keep_faults,
-                     "Leave as it is what `echinus build --repair` mends");
+                     "Do not make the repairs of `echinus build --repair`");
     arguments->mesh.add_format_option(command);
     command.add_flag("--json", arguments->json, "Print one JSON object");
     command.footer("Example: echinus mesh repair truck.obj --close-holes 32 --drop-inner-faces -o solid.obj");
@@ -145,8 +144,8 @@ void add_repair(Command mesh) {
 
 void add_mesh_command(Command program) {
     Command mesh = program.add_command(
-        "mesh", "Make a closed mesh: torus, sphere or box, centred at the origin; or repair one");
-    mesh.require_command("A subcommand (torus, sphere, box or repair)");
+        "mesh", "Make a closed mesh (torus, sphere or box, centred at the origin), or repair one");
+    mesh.require_command("A command (torus, sphere, box or repair)");
     mesh.footer("Example: echinus mesh torus --major 1 --minor 0.4 --segments 60x24 -o torus.obj");
     add_torus(mesh);
     add_sphere(mesh);

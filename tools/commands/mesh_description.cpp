@@ -76,7 +76,7 @@ std::string to_text(const MeshReport& report, const Vec3d& origin, const std::st
     table.add("components", std::to_string(report.component_count));
     table.add("closed", yes_or_no(report.closed));
     table.add("manifold", yes_or_no(report.manifold));
-    if (!report.orientable) table.add("orientable", "no, as a Moebius strip is not");
+    if (!report.orientable) table.add("orientable", "no (one-sided, like a Moebius strip)");
     for (const auto& [key, label, fault] : faults_of(report)) {
         const std::string count = std::to_string(fault.count);
         table.add(label, fault.count == 0 ? count : count + ", " + first_faces(fault));
@@ -97,14 +97,14 @@ std::string text_of(const Vec3d& point) {
 }
 
 std::string rounding_text(double step) {
-    return fmt::format("coordinates are floats, which step by {:.6g} here; finer detail of the file is lost",
-                       step);
+    return fmt::format(
+        "coordinates are floats, whose spacing is {:.6g} here; finer detail of the file is lost", step);
 }
 
 std::string refusal_of_open_mesh(const echinus::TriangleMesh& mesh, const MeshReport& report,
                                  const std::string& with, const std::string& otherwise) {
     return "the mesh is not closed: " + faults_of_edges(report) +
-           (report.orientable ? "" : ", and it has parts with one side only, as a Moebius strip has") + "; " +
+           (report.orientable ? "" : ", and it has one-sided parts, like a Moebius strip") + "; " +
            (foresee_repair(mesh).closed_then ? "mend it with " + with : "mend it elsewhere" + otherwise);
 }
 

@@ -138,8 +138,8 @@ void print_summary(const QuerySummary& summary, const QueryArguments& arguments)
         print(std::to_string(summary.point_count) + " points, " + std::to_string(summary.inside_count) +
               " inside, " + std::to_string(summary.contact_count) + " with a contact\n");
         if (summary.points_step > 0)
-            print("The points are floats, which step by " + number_text(summary.points_step) +
-                  " there; give them as float64 or as text.\n");
+            print("The points are floats, whose spacing is " + number_text(summary.points_step) +
+                  " there; pass them as float64 or as text.\n");
     }
 }
 
@@ -163,7 +163,8 @@ void query(const QueryArguments& arguments) {
 } // namespace
 
 void add_query_command(Command program) {
-    Command command = program.add_command("query", "Ask a map about points: inside, how deep, which way out");
+    Command command = program.add_command(
+        "query", "Query a map for points: inside or outside, depth, nearest surface point");
     const auto arguments = std::make_shared<QueryArguments>();
     command.add("MAP", &arguments->map, "Map file, or -").required().type_name("");
     command.add("POINTS", &arguments->points, "Points [n, 3] as .npy or lines x,y,z as .csv, or -")
@@ -174,15 +175,15 @@ void add_query_command(Command program) {
         .type_name("ANSWERS");
     command
         .add("--margin", &arguments->margin,
-             "Points outside get a contact too when they are at most this far from the surface, in "
+             "Points outside also get a contact if they are at most this far from the surface, in "
              "the unit of the mesh; with a distance map measured along their ray from the centre")
         .type_name("DISTANCE")
         .show_default();
     command.add_flag("--signed-distance", arguments->signed_distance,
-                     "Add the signed distance of every point, however far: negative inside (exact maps)");
+                     "Add the signed distance of every point, negative inside (exact maps)");
     command.add_flag("--winding-number", arguments->winding_number,
-                     "Add how often the surface goes around each point, to 0.0001: not whole where it is "
-                     "open (exact maps)");
+                     "Add the generalised winding number of every point, to 0.0001; not an integer for "
+                     "an open surface (exact maps)");
     command.add_flag("--json", arguments->json, "Print one JSON object");
     command.footer("Example:\n  echinus query torus.ech points.npy -o answers.npy");
     command.action([arguments] { query(*arguments); });

@@ -40,27 +40,27 @@ void PictureArguments::add_options(Command command, std::uint32_t width, std::ui
                                std::uint32_t least, std::uint32_t most) {
         command.add(name, &variable, description).range(least, most).type_name("COUNT").show_default();
     };
-    command.add("-o,--output", &target, "The picture, a PNG file, or -")
+    command.add("-o,--output", &target, "PNG file to write, or -")
         .required()
         .ends_in(".png")
         .type_name("PNG");
     add_count("--width", options.width, "Pixels", kLeastSide, RenderOptions::kMaxSide);
     add_count("--height", options.height, "Pixels", kLeastSide, RenderOptions::kMaxSide);
-    add_count("--samples", options.samples, "Rays per pixel: more take longer and leave less grain", 1,
+    add_count("--samples", options.samples, "Rays per pixel: more rays take longer and reduce noise", 1,
               RenderOptions::kMaxSampleCount);
-    add_count("--threads", options.thread_count, "0: all cores", 0, 1024);
+    add_count("--threads", options.thread_count, "Threads; 0: all cores", 0, 1024);
     command
-        .add_numbers(
-            "--view", ',', {&view.azimuth_deg, &view.elevation_deg},
-            "Where the camera stands, in degrees: around, counter-clockwise from above, and above the "
-            "floor")
+        .add_numbers("--view", ',', {&view.azimuth_deg, &view.elevation_deg},
+                     "Direction of the camera in degrees: azimuth, counter-clockwise seen from above, and "
+                     "elevation above "
+                     "the floor")
         .type_name("AZIMUTH,ELEVATION")
         .default_text("35,20");
 }
 
 void PictureArguments::add_up_option(Command command) {
     add_choice<Vec3d>(command, "--up", view.up, {{"x", {1, 0, 0}}, {"y", {0, 1, 0}}, {"z", {0, 0, 1}}},
-                      "Which axis of the mesh points up");
+                      "The axis of the mesh that points up");
 }
 
 void write_picture(const PictureArguments& arguments, const Image& image) {
@@ -105,7 +105,7 @@ void render_mesh(const MeshPicture& arguments) {
 
 void add_mesh_picture(Command program) {
     const auto arguments = std::make_shared<MeshPicture>();
-    Command command = program.add_command("mesh", "A mesh, matte and grey");
+    Command command = program.add_command("mesh", "A mesh in matte grey");
     command.add("MESH", &arguments->mesh.path, "Mesh file, or -").required().type_name("");
     arguments->mesh.add_format_option(command);
     arguments->add_options(command, 1000, 750);
@@ -138,7 +138,7 @@ void require_same_model(const TriangleMesh& mesh, const AnyMap& map, const std::
             reach = std::max(reach, length(mesh.vertices[vertex] - centre));
     constexpr float kTolerance = 0.01F;
     if (std::fabs(reach - radius) <= kTolerance * radius) return;
-    throw Error(ErrorCode::InvalidMesh, "not the mesh that " + map_name + " was built from: it reaches " +
+    throw Error(ErrorCode::InvalidMesh, "not the mesh from which " + map_name + " was built: it reaches " +
                                             std::to_string(reach) + " from the map's centre, the map " +
                                             std::to_string(radius));
 }
@@ -163,11 +163,13 @@ void render_map(const MapPicture& arguments) {
 
 void add_map_picture(Command program) {
     const auto arguments = std::make_shared<MapPicture>();
-    Command command =
-        program.add_command("map", "A map beside its model: the faces of an exact map by the length of their "
-                                   "lists, the surface rebuilt from a distance map layer by layer");
+    Command command = program.add_command(
+        "map", "A map next to its model: the faces of an exact map, coloured by the length of their "
+               "lists, or the surface reconstructed from a distance map, layer by layer");
     command.add("MAP", &arguments->map, "Map file, made by echinus build, or -").required().type_name("");
-    command.add("MESH", &arguments->mesh.path, "The mesh it was built from, or -").required().type_name("");
+    command.add("MESH", &arguments->mesh.path, "The mesh from which it was built, or -")
+        .required()
+        .type_name("");
     arguments->mesh.add_format_option(command);
     arguments->add_options(command, 1600, 700);
     arguments->add_up_option(command);
@@ -312,12 +314,12 @@ void add_moment_picture(Command program) {
     const auto arguments = std::make_shared<SimulationPicture>();
     Command command = program.add_command("moment", "One moment of a simulation");
     command.add("DIR", &arguments->folder, "Folder that echinus simulate wrote").required().type_name("");
-    command.add("--frame", &arguments->frame, "The frame to draw; the last if not given").type_name("NUMBER");
+    command.add("--frame", &arguments->frame, "The frame to draw; by default the last").type_name("NUMBER");
     command
         .add_numbers("--close-up", ',',
                      {&arguments->close_up.x, &arguments->close_up.y, &arguments->close_up.z,
                       &arguments->close_up_reach},
-                     "Show only what is around a point: no farther than REACH along each axis")
+                     "Show only the surroundings of a point, up to REACH along each axis")
         .type_name("X,Y,Z,REACH");
     arguments->add_options(command, 1000, 750);
     command.footer("Example:\n  echinus render moment out/horse --frame 120 -o moment.png");
@@ -340,7 +342,7 @@ void add_sheet_picture(Command program) {
 
 void add_render_command(Command program) {
     Command command = program.add_command("render", "Draw a mesh, a map, or moments of a simulation");
-    command.require_command("A subcommand (mesh, map, moment or sheet)");
+    command.require_command("A command (mesh, map, moment or sheet)");
     command.footer("Example:\n  echinus render map torus.ech torus.obj -o torus_map.png");
     add_mesh_picture(command);
     add_map_picture(command);

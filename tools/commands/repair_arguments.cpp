@@ -39,14 +39,16 @@ void add_length(Command command, const std::string& name, double& length, const 
 void add_solid_options(Command command, RepairArguments& arguments) {
     add_length(
         command, "--weld", arguments.weld_distance,
-        "Join corners at the edges of holes that are no farther apart, in the unit of the mesh, and fill "
-        "holes that are no wider; within 4.8e-7 of the radius --repair does so anyway");
+        "Join vertices at the borders of holes that are at most this far apart, in the unit of the mesh, and "
+        "fill holes that are no wider; --repair does so within 4.8e-7 of the radius");
     command
-        .add("--close-holes", &arguments.max_hole_edges, "Fill holes whose border has at most so many edges")
+        .add("--close-holes", &arguments.max_hole_edges,
+             "Fill holes whose border has at most this number of edges")
         .range(3, RepairOptions::kMaxHoleEdges)
         .type_name("EDGES");
-    command.add_flag("--drop-inner-faces", arguments.drop_inner_faces,
-                     "Drop faces that have the solid on both sides, such as an engine in a body");
+    command.add_flag(
+        "--drop-inner-faces", arguments.drop_inner_faces,
+        "Drop faces that have the solid on both sides, such as those of an engine in a car body");
     add_length(command, "--thicken", arguments.sheet_thickness,
-               "Make solids so thick of the parts that are not closed, in the unit of the mesh");
+               "Thicken open parts into solids of this thickness, in the unit of the mesh");
 }

@@ -239,13 +239,14 @@ Course run(Simulation& simulation, Results& results, std::uint32_t frame_limit, 
 void require_target(const SimulateArguments& arguments) {
     if (arguments.scene == kStandardStream)
         throw WrongUse("SCENE",
-                       "cannot be standard input (-): a model's file is looked for beside the scene");
+                       "cannot be standard input (-), since a model's file is looked up next to the scene");
     if (arguments.target.empty() && arguments.page.empty())
         throw WrongUse("simulate", "needs -o DIR, --html FILE, or both");
     if (arguments.target.empty() && arguments.obj)
-        throw WrongUse("--obj", "is about the files in a folder, so it needs -o DIR");
+        throw WrongUse("--obj", "applies to the files in a folder, so it needs -o DIR");
     if (!arguments.from_state.empty() && !arguments.page.empty())
-        throw WrongUse("--from-state", "does not go with --html, whose page shows all frames from the first");
+        throw WrongUse("--from-state",
+                       "cannot be combined with --html, whose page shows all frames from the first");
     require_one_result(arguments.page, arguments.json);
     require_one_result(arguments.save_state, arguments.json);
     if (arguments.page == kStandardStream && arguments.save_state == kStandardStream)
@@ -282,15 +283,16 @@ void choose_collision(const SimulateArguments& arguments, Scene& scene) {
     options.self_collision = arguments.self.value_or(options.self_collision && options.surface_collision);
     options.untangle = options.untangle && options.surface_collision;
     if (options.self_collision && !options.surface_collision)
-        throw WrongUse("--self", "needs contact of surfaces with the model: --surfaces on");
+        throw WrongUse("--self", "needs surface collision: --surfaces on");
 }
 
 /// A sheet of about so many particles in place of the scene's, whose rows and columns keep their proportion.
 /// Those that are held are the nearest to the scene's.
 void choose_particles(std::uint32_t particle_count, Scene& scene) {
     if (!scene.has_cloth || scene.mesh_cloth)
-        throw WrongUse("--particles",
-                       "is about a sheet, and the scene has none: another cloth has its mesh's particles");
+        throw WrongUse(
+            "--particles",
+            "applies to a sheet, and the scene has none: another cloth has the particles of its mesh");
     constexpr double kLeast = 2, kMost = 4096; // as in scenes
     ClothOptions& sheet = scene.cloth;
     const ClothOptions before = sheet;
@@ -336,8 +338,8 @@ std::vector<ColliderResult> results_of(const LoadedColliders& colliders, Course&
 void require_playable_colliders(const SimulateArguments& arguments, const Scene& scene) {
     for (const SceneCollider& collider : scene.colliders)
         if (collider.cache && !arguments.page.empty())
-            throw WrongUse("--html", "cannot show a collider that deforms, as the cache " +
-                                         collider.cache->name + " makes it do; write a folder with -o DIR");
+            throw WrongUse("--html", "cannot show a deforming collider, and the cache " +
+                                         collider.cache->name + " deforms one; write a folder with -o DIR");
 }
 
 /// A state of another scene is a wrong file, not a wrong option.
@@ -349,9 +351,10 @@ void go_on_from(const fs::path& state, std::uint32_t frame_limit, Simulation& si
         throw Error(ErrorCode::WrongFormat, error.what());
     }
     if (simulation.frame() >= frame_limit)
-        throw WrongUse("--from-state",
-                       fmt::format("{} is of frame {}, and the run ends at frame {}; give a larger --frames",
-                                   state.string(), simulation.frame(), frame_limit));
+        throw WrongUse(
+            "--from-state",
+            fmt::format("{} was saved after frame {}, and the run ends at frame {}; set a larger --frames",
+                        state.string(), simulation.frame(), frame_limit));
 }
 
 void write_state(const Simulation& simulation, Output& output) {
@@ -431,58 +434,56 @@ void add_options(Command command, SimulateArguments& arguments) {
         .add("-o,--output", &arguments.target,
              "Folder for cloth.obj, cloth.pc2, collider.obj and report.json")
         .type_name("DIR");
-    command
-        .add("--html", &arguments.page, "Write a page that plays the simulation, complete in one file, or -")
+    command.add("--html", &arguments.page, "Page that plays the simulation, a single file, or -")
         .not_empty()
         .type_name("FILE");
     command
         .add("--player", &arguments.player,
-             "The player that the page is made of, as scripts/web builds it; without it the installed one")
+             "Player from which the page is made, as built by scripts/web; by default the installed one")
         .not_empty()
         .type_name("FILE");
     command
-        .add(
-            "--models", &arguments.model_folders,
-            "Folder to look for the scene's model in, before the scene's own, ../models beside it and models")
+        .add("--models", &arguments.model_folders,
+             "Folders in which the scene's model is looked up, before the scene's own, its ../models, and "
+             "models")
         .type_name("DIR");
     command.add("--frames", &arguments.frame_limit, "Frame limit in place of the scene's")
         .range(1, 1'000'000'000)
         .type_name("COUNT");
     command
         .add("--every", &arguments.stride,
-             "Save every so many frames; without it all in a folder, and 60 per second in a page")
+             "Save every COUNT-th frame; by default all frames in a folder, and 60 per second in a page")
         .range(1, 1'000'000)
         .type_name("COUNT");
     command
         .add("--particles", &arguments.particle_count,
-             "About so many particles of the sheet in place of the scene's, in as many rows for each column")
+             "Use a sheet of about COUNT particles in place of the scene's, with the same proportions")
         .range(4, 4096 * 4096)
         .type_name("COUNT");
     command
         .add("--from-state", &arguments.from_state,
-             "Go on from a state that --save-state wrote, of the same scene with the same options")
+             "Resume from a state that --save-state wrote for the same scene with the same options")
         .not_empty()
         .type_name("FILE");
     command
         .add("--save-state", &arguments.save_state,
-             "Write the state at the end, to go on from it, to a file or -")
+             "Write the final state, from which a run can resume, to a file or -")
         .not_empty()
         .type_name("FILE");
     const std::vector<std::pair<std::string, std::optional<bool>>> on_or_off{{"on", true}, {"off", false}};
     add_choice(command, "--surfaces", arguments.surfaces, on_or_off,
-               "Whether faces and edges collide, in place of the scene's surface_collision");
+               "Let faces and edges collide or not, in place of the scene's surface_collision");
     add_choice(command, "--self", arguments.self, on_or_off,
-               "Whether the cloth collides with itself, in place of the scene's self_collision");
+               "Let the cloth collide with itself or not, in place of the scene's self_collision");
     command
         .add("--threads", &arguments.thread_count,
-             "Threads to build the map, simulate and judge the end on; 0: all cores. Without it all cores, "
-             "and "
-             "for the simulation what the scene says")
+             "Threads that build the map, simulate and test for intersections; 0: all cores. By default all "
+             "cores, and for the simulation the scene's thread_count")
         .range(0, 1024)
         .type_name("COUNT");
     add_choice(command, "--judge", arguments.judges_all,
                std::vector<std::pair<std::string, bool>>{{"last", false}, {"all", true}},
-               "Which saved frames to judge for faces that intersect");
+               "Saved frames to test for intersecting faces");
     command.add_flag("--obj", arguments.obj, "Write frames/cloth_NUMBER.obj in place of cloth.pc2");
     command.add_flag("--json", arguments.json, "Print the report as one JSON object");
 }
@@ -490,7 +491,7 @@ void add_options(Command command, SimulateArguments& arguments) {
 } // namespace
 
 void add_simulate_command(Command program) {
-    Command command = program.add_command("simulate", "Let a cloth fall on a model, until it rests");
+    Command command = program.add_command("simulate", "Simulate a scene until it comes to rest");
     const auto arguments = std::make_shared<SimulateArguments>();
     add_options(command, *arguments);
     command.footer("Examples:\n  echinus simulate scenes/horse.json -o out/horse\n"

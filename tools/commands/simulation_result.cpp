@@ -238,7 +238,7 @@ std::string text_of_solver(const SimulationOptions& options) {
 }
 
 std::string text_of(const std::optional<Strain>& strain) {
-    if (!strain) return "none: there is no material";
+    if (!strain) return "none, since there is no material";
     return percent(strain->mean) + " mean, " + percent(strain->percentile_99) + " 99th percentile, " +
            percent(strain->largest) + " largest";
 }
@@ -254,25 +254,26 @@ std::string to_text(const SimulationResult& result) {
     const auto add = [&](const char* label, const std::string& value) {
         text += fmt::format("  {:<22}{}\n", label, value);
     };
-    add("particles, sticks", fmt::format("{}, {}", particle_count, simulation.deformable().sticks.size()));
+    add("particles, constraints",
+        fmt::format("{}, {}", particle_count, simulation.deformable().sticks.size()));
     if (const Deformable& body = simulation.deformable(); !body.tetrahedra.empty())
         add("tetrahedra",
-            fmt::format("{}, {} flat or inside out at the end", body.tetrahedra.size(), count_crushed(body)));
+            fmt::format("{}, {} flat or inverted at the end", body.tetrahedra.size(), count_crushed(body)));
     add("solver", text_of_solver(simulation.options()));
     add("frames", fmt::format("{}, {}", simulation.frame(),
-                              simulation.at_rest() ? "at rest" : "not at rest: the frame limit"));
+                              simulation.at_rest() ? "at rest" : "not at rest: frame limit reached"));
     add("ms per frame",
         fmt::format("{:.2f} = {:.2f} integration + {:.2f} constraints + {:.2f} collision", rates.total_ms,
                     rates.integration_ms, rates.constraints_ms, rates.collision_ms));
     add("frames per second", fmt::format("{:.0f}, on one core", rates.frames_per_second));
-    add("queries", fmt::format("{:.0f} per frame, {:.1f} ns each; {:.0f} took the map to answer",
+    add("queries", fmt::format("{:.0f} per frame, {:.1f} ns each; {:.0f} answered by the map",
                                rates.queries_per_frame, rates.ns_per_query, rates.map_queries_per_frame));
     if (is_exact(simulation))
         add("particles lost", fmt::format("{}; rescued {} times", simulation.profile().lost_count,
                                           simulation.profile().rescued_count));
     if (simulation.options().surface_collision)
         add("vertices truncated",
-            fmt::format("{:.2f} per frame, {} at most; squeezed {} times", rates.truncated_per_frame,
+            fmt::format("{:.2f} per frame, {} at most; {} unresolved pairs", rates.truncated_per_frame,
                         result.most_truncated, simulation.profile().squeezed_count));
     add("particles inside", fmt::format("{} ({}), by winding number", result.verdict.inside_count,
                                         percent(static_cast<double>(result.verdict.inside_count) /
@@ -284,7 +285,7 @@ std::string to_text(const SimulationResult& result) {
         add("contact gap", fmt::format("{:.3f} thicknesses on average, {:.3f} at least; {} particles",
                                        gap.mean / thickness, gap.least / thickness, gap.particle_count));
     const char* const models = result.colliders.size() == 1 ? "the model" : "the models";
-    add("faces that intersect",
+    add("intersecting faces",
         fmt::format("{} pairs with {}, {} of the cloth's own", result.verdict.pairs.with_models, models,
                     result.verdict.pairs.own));
     if (result.worst)

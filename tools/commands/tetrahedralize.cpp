@@ -94,8 +94,7 @@ std::string count_text(std::size_t count, std::size_t asked) {
     const bool misses =
         asked > 0 && std::abs(static_cast<double>(count) / static_cast<double>(asked) - 1) > kTolerance;
     return std::to_string(count) +
-           (misses ? fmt::format(", in place of {}: the model does not let them be so large or small", asked)
-                   : "");
+           (misses ? fmt::format(", in place of {}: the model does not allow that number", asked) : "");
 }
 
 /// @param asked  the count that was asked for, or 0
@@ -108,7 +107,8 @@ std::string text_of(const Outcome& outcome, const std::string& title, std::size_
     table.add("edges", fmt::format("{:.4g} to {:.4g}", report.shortest_edge, report.longest_edge));
     table.add("dihedral angles",
               fmt::format("{:.1f} to {:.1f} degrees", report.least_angle_deg, report.greatest_angle_deg));
-    table.add("volume", fmt::format("{:.6g}, of the smallest {:.3g}", report.volume, report.least_volume));
+    table.add("volume",
+              fmt::format("{:.6g}; that of the smallest {:.3g}", report.volume, report.least_volume));
     table.add("boundary", fmt::format("{} faces, {}", report.boundary.face_count,
                                       report.boundary.component_count == 1
                                           ? "in one piece"
@@ -164,16 +164,16 @@ void add_tetrahedralize_command(Command program) {
         .type_name("BODY");
     command
         .add("--size", &arguments->size,
-             "Longest edge of the tetrahedra inside, in the unit of the mesh; features finer than that are "
+             "Length of the longest interior edges, in the unit of the mesh; finer features are "
              "lost")
         .type_name("LENGTH");
     command
         .add("--count", &arguments->count,
-             "About so many tetrahedra, in place of --size; 10000 where neither is given")
+             "Target number of tetrahedra, in place of --size; 10000 if neither is given")
         .range(1U, 100'000'000U)
         .excludes("--size")
         .type_name("NUMBER");
-    command.add("--most", &arguments->most, "Refuse to make more tetrahedra than that")
+    command.add("--most", &arguments->most, "Largest number of tetrahedra; more are refused")
         .range(1U, 100'000'000U)
         .type_name("NUMBER")
         .show_default();
@@ -181,10 +181,12 @@ void add_tetrahedralize_command(Command program) {
         .range(0, 1024)
         .type_name("COUNT")
         .show_default();
-    command.add_flag("--repair", arguments->repair,
-                     "Mend the mesh first: drop duplicate faces and doubled patches, turn inside-out parts");
-    command.add_flag("--allow-open", arguments->allow_open,
-                     "Fill also a mesh that is not closed: what the generalised winding number calls inside");
+    command.add_flag(
+        "--repair", arguments->repair,
+        "Repair the mesh first: drop duplicate faces and doubled patches, flip inside-out parts");
+    command.add_flag(
+        "--allow-open", arguments->allow_open,
+        "Accept a mesh that is not closed; the generalised winding number decides what is inside");
     arguments->mesh.add_format_option(command);
     command.add_flag("--json", arguments->json, "Print one JSON object");
     command.footer("Example:\n  echinus tetrahedralize liver.off -o liver.msh --count 10000");

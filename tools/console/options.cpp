@@ -102,6 +102,15 @@ const CLI::App& innermost(const CLI::App& app) {
     return app;
 }
 
+/// The form of an option's value, such as COUNTxCOUNT; empty for a name that the command does not have.
+std::string type_of_option(const CLI::App& command, const std::string& name) {
+    if (const CLI::Option* option = command.get_option_no_throw(name)) return option->get_type_name();
+    for (const CLI::App* group : command.get_subcommands([](const CLI::App*) { return true; }))
+        if (group->get_name().empty())
+            if (std::string type = type_of_option(*group, name); !type.empty()) return type;
+    return {};
+}
+
 /// Of a command or an option that does not exist, says what is near it, and which commands do; nothing where
 /// all exist that were given. CLI11 only says that words were left over.
 std::optional<std::string> sentence_about_unknown(const CLI::App& app) {
@@ -112,24 +121,27 @@ std::optional<std::string> sentence_about_unknown(const CLI::App& app) {
         if (!is_option && commands.empty()) continue;
         const std::string name = word.substr(0, word.find('='));
         const auto nearest = nearest_of(is_option ? option_names(command) : commands, name);
-        std::string sentence = is_option ? name + " is no option here" : "'" + word + "' is no command";
+        std::string sentence =
+            is_option ? "there is no option " + name : "there is no command '" + word + "'";
         if (nearest) sentence += "; the nearest is " + *nearest;
         if (is_option) return sentence;
         for (const std::string& known : commands)
-            sentence += (&known == &commands.front() ? "; there are " : ", ") + known;
+            sentence += (&known == &commands.front() ? "; the commands are " : ", ") + known;
         return sentence;
     }
     return {};
 }
 
 /// @param found  CLI11's "Could not convert: OPTION = VALUE"
-std::string sentence_about_value(const std::string& found) {
+std::string sentence_about_value(const CLI::App& app, const std::string& found) {
     const std::size_t colon = found.find(": "), equals = found.find(" = ");
     if (colon == std::string::npos || equals == std::string::npos) return found;
     const std::string option = found.substr(colon + 2, equals - colon - 2), value = found.substr(equals + 3);
-    const std::string remedy =
-        value == "=" ? "; write it as " + option + " VALUE or " + option + "=VALUE" : ", see its help";
-    return option + ": '" + value + "' is not what it takes" + remedy;
+    if (value == "=")
+        return option + ": '=' is not a valid value; write it as " + option + " VALUE or " + option +
+               "=VALUE";
+    const std::string form = type_of_option(innermost(app), option);
+    return option + ": '" + value + "' is not a valid value" + (form.empty() ? "" : "; expected " + form);
 }
 
 } // namespace
@@ -156,7 +168,7 @@ Option Option::ends_in(const std::string& ending) const {
         std::transform(own.begin(), own.end(), own.begin(),
                        [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
         if (own.empty() || own == ending) return std::string();
-        return "ends in " + file.extension().string() + ", and what is written is " + ending.substr(1) +
+        return "ends in " + file.extension().string() + ", but the output is " + ending.substr(1) +
                "; name it " + std::filesystem::path(file).replace_extension(ending).string();
     });
     return *this;
@@ -255,6 +267,18 @@ void Program::add_version(const std::string& text) {
     app_->set_version_flag("--version", text);
 }
 
+std::string Program::given_command() const {
+    std::string path = app_->get_name();
+    for (const CLI::App* app = app_.get(); app != nullptr;) {
+        const CLI::App* inner = nullptr;
+        for (const CLI::App* given : app->get_subcommands())
+            if (!given->get_name().empty()) inner = given;
+        if (inner != nullptr) path += " " + inner->get_name();
+        app = inner;
+    }
+    return path;
+}
+
 std::optional<std::string> Program::run(int argument_count, const char* const* arguments) {
     try {
         app_->parse(argument_count, arguments);
@@ -264,7 +288,7 @@ std::optional<std::string> Program::run(int argument_count, const char* const* a
         app_->exit(help_or_version, text, text);
         return text.str().ends_with('\n') ? text.str() : text.str() + "\n"; // forgotten in nested commands
     } catch (const CLI::ConversionError& error) {
-        throw WrongUse(sentence_about_value(error.what()));
+        throw WrongUse(sentence_about_value(*app_, error.what()));
     } catch (const CLI::ParseError& error) {
         // A mistyped option may be the one that is missing.
         throw WrongUse(sentence_about_unknown(*app_).value_or(error.what()));

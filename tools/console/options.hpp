@@ -103,6 +103,8 @@ class Program {
     Command command() { return Command(app_.get()); }
     /// Adds --version.
     void add_version(const std::string& text);
+    /// The program and the commands that were given, such as "echinus mesh torus".
+    std::string given_command() const;
     /// Parses the arguments and runs the actions of the commands that they name.
     /// @returns the help or version to print, where it was asked for
     /// @throws WrongUse, and what the actions throw

@@ -145,8 +145,8 @@ std::size_t read_dict_size(Input& input) {
     std::array<unsigned char, 2> version{};
     read_exactly(input, version.data(), version.size());
     if (version[0] < 1 || version[0] > 3) {
-        input.fail(ErrorCode::WrongFormat,
-                   "a .npy file of version " + std::to_string(version[0]) + ", but versions 1 to 3 are read");
+        input.fail(ErrorCode::WrongFormat, "a .npy file of version " + std::to_string(version[0]) +
+                                               ", but only versions 1 to 3 are supported");
     }
     std::array<unsigned char, 4> size{};
     read_exactly(input, size.data(), version[0] == 1 ? 2 : 4);
@@ -200,7 +200,7 @@ namespace {
 }
 
 void require_end(Input& input, std::uint64_t promised_count) {
-    if (!input.at_end()) fail_count(input, promised_count, "goes on behind them");
+    if (!input.at_end()) fail_count(input, promised_count, "continues after them");
 }
 
 /// Rows of three numbers of type T.

@@ -91,12 +91,13 @@ std::unique_ptr<PointSource> open_csv_points(std::unique_ptr<Input> input) {
             require_room_for(*input, points.size());
         } else if (!(names_may_follow && holds_names(text))) {
             input->fail(ErrorCode::Damaged, "line " + std::to_string(line_number) + " is " + excerpt(text) +
-                                                " and not three numbers x,y,z" + remedy_for(text));
+                                                ", not three numbers x,y,z" + remedy_for(text));
         }
         names_may_follow = false;
     }
     if (names_may_follow)
-        input->fail(ErrorCode::WrongFormat, "it holds neither points nor a line of names; a line is x,y,z");
+        input->fail(ErrorCode::WrongFormat,
+                    "it contains neither points nor a line of names; a line is x,y,z");
     return std::make_unique<PointList>(std::move(points));
 }
 
@@ -116,8 +117,9 @@ std::string excerpt(std::string_view text) {
 
 void require_room_for(const Input& input, std::uint64_t count) {
     if (count > kMaxPointsInMemory)
-        input.fail(ErrorCode::Unreadable, "it has more than " + std::to_string(kMaxPointsInMemory) +
-                                              " points; so many are read only from a .npy file in C order");
+        input.fail(ErrorCode::Unreadable,
+                   "it has more than " + std::to_string(kMaxPointsInMemory) +
+                       " points; that many can be read only from a .npy file in C order");
 }
 
 std::size_t PointList::read(std::span<Vec3d> block) {

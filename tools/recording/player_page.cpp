@@ -271,7 +271,7 @@ Player::Player(fs::path path) {
     page_ = read_player(path);
     place_ = page_.find(kPlace);
     if (place_ != std::string::npos && page_.find(kPlace, place_ + 1) == std::string::npos) return;
-    throw Error(ErrorCode::WrongFormat, path.string() + ": is no player: it must have the line " +
+    throw Error(ErrorCode::WrongFormat, path.string() + ": is not a player: it must contain the line " +
                                             std::string(kPlace) +
                                             " once; scripts/web --build-only builds one");
 }

@@ -73,10 +73,10 @@ void require_playable(std::size_t particle_count, std::uint32_t frame_limit, std
     std::uint64_t remedy = std::uint64_t{2} * stride;
     while (!holds(remedy) && remedy < frame_limit) remedy *= 2;
     throw Error(ErrorCode::InvalidOptions,
-                fmt::format("a page of {} particles in up to {} frames is more than a browser holds; {}",
+                fmt::format("a page of {} particles in up to {} frames is more than a browser can hold; {}",
                             particle_count, most_recorded(frame_limit, stride),
                             holds(remedy) ? fmt::format("record fewer with --every {}, or end earlier with "
                                                         "--frames",
                                                         remedy)
-                                          : "take a smaller cloth"));
+                                          : "use a smaller cloth"));
 }

@@ -82,7 +82,7 @@ std::vector<std::uint8_t> read_let_through(const ReportReader& reader, const jso
     for (const json& run : reader.list(collider, "lets_through")) {
         if (!run.is_array() || run.size() != 2 || !run[0].is_number_unsigned() ||
             !run[1].is_number_unsigned() || run[0] > run[1] || run[1] >= particle_count)
-            reader.fail("\"lets_through\" has something else than the first and the last of particles");
+            reader.fail("\"lets_through\" does not have the first and the last of particles");
         std::fill(passes.begin() + run[0].get<std::ptrdiff_t>(),
                   passes.begin() + run[1].get<std::ptrdiff_t>() + 1, std::uint8_t{1});
     }
@@ -98,7 +98,7 @@ SavedCollider read_collider(const ReportReader& reader, const json& collider, co
     move_to_origin({}, saved.mesh);
     if (collider.contains("faces") && collider["faces"] != saved.mesh.faces.size())
         reader.fail("the collider's mesh has " + std::to_string(saved.mesh.faces.size()) +
-                    " faces, not as many as \"faces\" says");
+                    " faces, which differs from \"faces\"");
     for (const json& pose : reader.list(collider, "poses")) {
         const double frame = reader.number(reader.member(pose, "frame"), "frame");
         if (!saved.poses.empty() && !(frame > saved.poses.back().frame))
@@ -110,7 +110,7 @@ SavedCollider read_collider(const ReportReader& reader, const json& collider, co
         if (!cache_name.is_string()) reader.fail("the collider's \"cache\" is not a file name");
         saved.cache = std::make_shared<PointCacheReader>(folder / cache_name.get<std::string>());
         if (saved.cache->point_count() != saved.mesh.vertices.size())
-            reader.fail("the collider's cache has not the points of its mesh");
+            reader.fail("the collider's cache does not have the points of its mesh");
     }
     saved.passes = read_let_through(reader, collider, particle_count);
     return saved;
@@ -162,7 +162,7 @@ void SimulationFolder::read_report(const fs::path& path) {
             colliders_.push_back(read_collider(reader, collider, path.parent_path(), cache_.point_count()));
     for (const SavedCollider& collider : colliders_)
         if (collider.cache && collider.cache->sample_count() != sample_count())
-            reader.fail("a collider's cache has not as many samples as cloth.pc2");
+            reader.fail("a collider's cache does not have as many samples as cloth.pc2");
 
     const auto [x, y, z] = reader.numbers<3>(reader.root(), "gravity");
     const Vec3d gravity{x, y, z};

@@ -14,7 +14,7 @@ namespace {
 std::int16_t stored_winding(int winding) {
     if (winding > std::numeric_limits<std::int16_t>::max() ||
         winding < -std::numeric_limits<std::int16_t>::max() + 1)
-        throw Error(ErrorCode::InvalidMesh, "the surface winds around a place more than 32766 times");
+        throw Error(ErrorCode::InvalidMesh, "the surface winds around a point more than 32766 times");
     return static_cast<std::int16_t>(winding);
 }
 

@@ -79,7 +79,7 @@ void require_sound(const ExactMapOptions& options) {
                                                    std::to_string(ExactMapOptions::kMaxDivisions));
     if (options.divisions != 0 && options.byte_budget != 0)
         throw Error(ErrorCode::InvalidOptions,
-                    "divisions and byte_budget are both given; the one leaves no choice to the other");
+                    "divisions and byte_budget are both given; leave one of them out");
 }
 
 /// As people write it, with three digits: "48.5 MB". Rounded up, so that a map of these bytes keeps within
@@ -171,7 +171,7 @@ ExactMapStatistics statistics_of(std::size_t face_count, std::size_t dropped_fac
 [[noreturn]] void fail_of_intervals() {
     throw Error(ErrorCode::InvalidMesh,
                 "the faces pass through cells more than " + std::to_string(BandFinder::kMostIntervals) +
-                    " times, which is more than a map can hold; take fewer cells, or drop faces that lie "
+                    " times, which is more than a map can hold; use fewer cells, or drop faces that lie "
                     "on each other");
 }
 

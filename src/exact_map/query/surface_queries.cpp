@@ -390,8 +390,9 @@ void faces_within_batch(const ExactMapView& map, StridedSpan<const Vec3f> vertic
     for (std::size_t i = 1; i <= triangles.size(); ++i) {
         total += lists.offsets[i];
         if (total > UINT32_MAX)
-            throw Error(ErrorCode::InvalidOptions,
-                        "more than 2^32 faces are within reach of the triangles; ask for fewer at a time");
+            throw Error(
+                ErrorCode::InvalidOptions,
+                "more than 2^32 faces are within reach of the triangles; query fewer triangles at a time");
         lists.offsets[i] = static_cast<std::uint32_t>(total);
     }
     lists.faces.clear();

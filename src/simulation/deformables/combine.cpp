@@ -23,7 +23,7 @@ void append(std::vector<Item>& to, const std::vector<Item>& from) {
 
 /// A part that names a particle which it does not have would name one of the next part's.
 void require_part(const Deformable& part, std::size_t number, std::size_t particles_before) {
-    const std::string name = "part " + std::to_string(number) + " of what is combined: ";
+    const std::string name = "part " + std::to_string(number) + " of the combined parts: ";
     try {
         require_valid(part);
     } catch (const Error& error) {
@@ -31,16 +31,16 @@ void require_part(const Deformable& part, std::size_t number, std::size_t partic
     }
     for (const Attachment& attachment : part.attachments)
         require_option(attachment.particle < part.particle_count(),
-                       name + "an attachment names particle " + std::to_string(attachment.particle) +
+                       name + "an attachment refers to particle " + std::to_string(attachment.particle) +
                            "; the last one is " + std::to_string(part.particle_count() - 1));
     for (const Handle& handle : part.handles)
         for (const std::uint32_t particle : handle.particles)
             require_option(particle < part.particle_count(),
-                           name + "a handle names particle " + std::to_string(particle) +
+                           name + "a handle refers to particle " + std::to_string(particle) +
                                "; the last one is " + std::to_string(part.particle_count() - 1));
     for (const CollisionFilter& filter : part.filters)
         require_option(filter.particle < part.particle_count(),
-                       name + "a filter names particle " + std::to_string(filter.particle) +
+                       name + "a filter refers to particle " + std::to_string(filter.particle) +
                            "; the last one is " + std::to_string(part.particle_count() - 1));
     require_option(part.particle_count() <= std::numeric_limits<std::uint32_t>::max() - particles_before,
                    name + "it would have particles beyond number 4294967295");

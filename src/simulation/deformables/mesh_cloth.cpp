@@ -29,17 +29,17 @@ void require_possible(const TriangleMesh& mesh, const MeshClothOptions& options)
     if (!mesh.faces.empty()) require_valid(mesh);
     require_option(options.rest_vertices.empty() || options.rest_vertices.size() == count,
                    "the cloth has " + std::to_string(count) + " vertices, but its rest shape " +
-                       std::to_string(options.rest_vertices.size()) + "; it needs as many");
+                       std::to_string(options.rest_vertices.size()) + "; it needs the same number");
     require_ranges(options);
     require_valid(options.pose, "the cloth");
     for (const auto& ends : options.threads)
         for (const std::uint32_t end : ends)
             require_option(end < count, missing_vertex("a thread ends at", end, count));
     for (const std::uint32_t pin : options.pins)
-        require_option(pin < count, missing_vertex("a pin names", pin, count));
+        require_option(pin < count, missing_vertex("a pin refers to", pin, count));
     for (const Attachment& attachment : options.attachments)
         require_option(attachment.particle < count,
-                       missing_vertex("an attachment names", attachment.particle, count));
+                       missing_vertex("an attachment refers to", attachment.particle, count));
     const std::set<std::uint32_t> pinned(options.pins.begin(), options.pins.end());
     for (const Attachment& attachment : options.attachments)
         require_option(!pinned.contains(attachment.particle),

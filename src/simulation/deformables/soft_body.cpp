@@ -20,7 +20,7 @@ void require_possible(const TetrahedralMesh& mesh, const SoftBodyOptions& option
     require_valid(options.pose, "the soft body");
     const std::size_t count = mesh.vertices.size();
     const auto require_vertex = [&](std::uint32_t vertex, const char* what) {
-        require_option(vertex < count, std::string(what) + " of the soft body names vertex " +
+        require_option(vertex < count, std::string(what) + " of the soft body refers to vertex " +
                                            std::to_string(vertex) + ", but it has only " +
                                            std::to_string(count) + ", numbered from 0");
     };

@@ -30,7 +30,7 @@ constexpr std::size_t kNamed = 3;
 /// @param pinned  untangle() moves no pinned particle
 std::string remedy(const SimulationOptions& options, const char* option, bool pinned = false) {
     return std::string("; move the start until they are apart, ") +
-           (options.untangle || pinned ? "" : "set untangle, which does that, ") + "or switch " + option +
+           (options.untangle || pinned ? "" : "set untangle to separate them, ") + "or switch " + option +
            " off";
 }
 
@@ -55,7 +55,7 @@ template <typename Item, typename Name>
                          const SimulationOptions& options, const char* option, const Name& name) {
     std::string sentence = "the deformable begins " + what + " " + std::to_string(found.size()) + " " + noun +
                            (found.size() == 1 ? "" : "s") +
-                           (options.untangle ? " that untangle could not part: " : ": ");
+                           (options.untangle ? " that untangle could not separate: " : ": ");
     for (std::size_t i = 0; i < std::min(found.size(), kNamed); ++i)
         sentence += (i == 0 ? "" : ", ") + name(found[i]);
     if (found.size() > kNamed) sentence += ", ...";
@@ -91,7 +91,8 @@ void require_apart(const Deformable& deformable, const TriangleMesh& surface, co
     if (!intersecting.empty())
         refuse("intersecting " + name + " in", intersecting, "pair", options, "surface_collision",
                [&](const FacePair& pair) {
-                   return name_of(elements, pair.a) + " and its face " + std::to_string(pair.b);
+                   return name_of(elements, pair.a) + " of the deformable and face " +
+                          std::to_string(pair.b) + " of " + name;
                });
     if (!touching.empty())
         refuse("touching " + name + " with", touching, "face", options, "surface_collision",
@@ -111,8 +112,9 @@ void require_resolved(const Deformable& deformable, const Elements& elements) {
     if (!(least_gap > edge_length * threshold::kMostSelfThickness)) return;
     throw Error(ErrorCode::InvalidOptions,
                 "the deformable begins " + std::to_string(extent) +
-                    " from the origin, where floats tell its layers apart only from " +
-                    std::to_string(least_gap) + " on, and its mean edge is " + std::to_string(edge_length) +
+                    " from the origin, where floats separate its layers only from a distance of " +
+                    std::to_string(least_gap) + " on, and its mean edge length is " +
+                    std::to_string(edge_length) +
                     "; move the scene nearer to the origin, or switch self_collision off");
 }
 
@@ -155,10 +157,10 @@ void require_no_meeting(const Deformable& deformable, std::span<const Vec3f> pla
     const std::size_t face_count = intersecting.size() + touching.size();
     if (face_count == 0 && inside_count == 0) return;
     throw Error(ErrorCode::InvalidOptions,
-                "a teleport sets the deformable and " + name + " where " +
+                "a teleport moves the deformable and " + name + " to where " +
                     (face_count > 0 ? std::to_string(face_count) + " pairs of their faces meet"
                                     : std::to_string(inside_count) + " particles are inside") +
-                    "; set them elsewhere, or both elsewhere together");
+                    "; choose another displacement, or teleport both together");
 }
 
 } // namespace echinus

@@ -73,14 +73,14 @@ void require_valid(const SimulationOptions& options) {
     if (!is_finite(options.gravity)) fail("simulation option gravity is not finite");
     if (!is_finite(options.wind)) fail("simulation option wind is not finite");
     if (options.wind != Vec3d{} && options.wind_rate == 0)
-        fail("simulation option wind_rate is 0, so that the wind takes hold of nothing; give the rate, per "
+        fail("simulation option wind_rate is 0, so the wind has no effect; set the rate, per "
              "second, at which the cloth takes on its velocity");
     if (options.self_collision && !options.surface_collision)
-        fail("simulation option self_collision needs surface_collision, which keeps faces off colliders too; "
+        fail("simulation option self_collision needs surface_collision, which keeps faces off colliders; "
              "set both");
     if (options.untangle && !options.surface_collision)
-        fail("simulation option untangle needs surface_collision, which is what a start has to be free of "
-             "intersections for; set both");
+        fail("simulation option untangle needs surface_collision, which requires a start without "
+             "intersections; set both");
     if (options.surface_collision && !options.keep_free)
         fail("simulation option keep_free is false; it must be true with surface_collision, which lets no "
              "particle through");
@@ -119,7 +119,8 @@ void require_valid(const Deformable& deformable) {
     if (deformable.previous_positions.size() != count || deformable.inverse_masses.size() != count)
         fail("the deformable has " + std::to_string(count) + " positions, " +
              std::to_string(deformable.previous_positions.size()) + " previous positions and " +
-             std::to_string(deformable.inverse_masses.size()) + " inverse masses; it needs as many of each");
+             std::to_string(deformable.inverse_masses.size()) +
+             " inverse masses; it needs the same number of each");
     for (std::size_t i = 0; i < count; ++i) {
         const float inverse_mass = deformable.inverse_masses[i];
         if (!is_finite(deformable.positions[i]) || !is_finite(deformable.previous_positions[i]) ||
@@ -132,7 +133,7 @@ void require_valid(const Deformable& deformable) {
     const std::vector<Vec3f>& rest = deformable.rest_positions;
     if (!rest.empty() && rest.size() != count)
         fail("the deformable has " + std::to_string(count) + " positions and " + std::to_string(rest.size()) +
-             " rest positions; it needs as many, or none where it begins at rest");
+             " rest positions; it needs the same number, or none if it begins at rest");
     for (std::size_t i = 0; i < rest.size(); ++i)
         if (!is_finite(rest[i]) || !is_within_reach(rest[i]))
             fail("particle " + std::to_string(i) +
@@ -152,7 +153,7 @@ void require_valid(const Deformable& deformable) {
     for (std::size_t i = 0; i < deformable.faces.size(); ++i)
         for (const std::uint32_t particle : deformable.faces[i])
             if (particle >= count)
-                fail("face " + std::to_string(i) + " names particle " + std::to_string(particle) +
+                fail("face " + std::to_string(i) + " refers to particle " + std::to_string(particle) +
                      "; the last one is " + std::to_string(count - 1));
 }
 
@@ -174,13 +175,13 @@ void require_jakobsen(const Deformable& deformable, const SimulationOptions& opt
         require_option(!condition, std::string(cause) + ", or use the newton solver");
     };
     refuse(!deformable.tetrahedra.empty(),
-           "the deformable has tetrahedra, and the jakobsen solver has sticks only; leave them out");
+           "the deformable has tetrahedra, which the jakobsen solver does not support; leave them out");
     refuse(options.pressure > 0,
-           "simulation option pressure is positive, and the jakobsen solver has none; leave "
+           "simulation option pressure is positive, and the jakobsen solver does not support it; leave "
            "it out");
-    refuse(!deformable.handles.empty(), "the deformable has handles, and the jakobsen solver holds what is "
-                                        "pinned or attached; leave them out");
-    refuse(options.surface_collision, "simulation option surface_collision is true, and under the jakobsen "
+    refuse(!deformable.handles.empty(), "the deformable has handles, which the jakobsen solver does not "
+                                        "support; pin or attach the particles");
+    refuse(options.surface_collision, "simulation option surface_collision is true, but with the jakobsen "
                                       "solver only particles collide; leave it out");
     refuse(rounding_decides(deformable, options),
            "the deformable begins so far from the origin, or time_step is so small, that in a frame of the "
@@ -205,8 +206,8 @@ void require_there(const std::string& name, std::uint32_t particle, std::uint32_
     if (particle >= particle_count)
         fail(name + ": the last particle is " + std::to_string(particle_count - 1));
     if (collider >= collider_count)
-        fail(name + " names collider " + std::to_string(collider) + " of " + std::to_string(collider_count) +
-             ", numbered from 0");
+        fail(name + " refers to collider " + std::to_string(collider) + " of " +
+             std::to_string(collider_count) + ", numbered from 0");
 }
 
 } // namespace
@@ -251,7 +252,7 @@ void require_valid_handles(const Deformable& deformable) {
         const Handle& handle = deformable.handles[h];
         const std::string name = "handle " + std::to_string(h);
         require_valid(handle.keys, name);
-        if (handle.particles.empty()) fail(name + " leads no particles");
+        if (handle.particles.empty()) fail(name + " holds no particles");
         if (std::isnan(handle.release_time)) fail(name + " has a release time that is not a number");
         for (const std::uint32_t particle : handle.particles) {
             const std::string of_particle = name + " of particle " + std::to_string(particle);
@@ -283,7 +284,7 @@ void require_valid(const Collider& collider, const SimulationOptions& options, c
         !options.allow_open_colliders)
         fail(name + " has the exact map of an open mesh, with " +
              std::to_string(exact->view().border.size()) +
-             " edges at gaps, where particles get in; close the mesh (repair() mends some), use a distance "
+             " border edges, where particles get in; close the mesh (repair() mends some), use a distance "
              "map, set surface_collision, which needs no inside, or set allow_open_colliders and lose "
              "particles");
 }
@@ -303,7 +304,7 @@ void require_valid(const VertexCache& cache, std::size_t vertex_count, const std
         fail(owner + ": the times of " + name + " are not finite, or the samples not a positive time apart");
     if (cache.vertex_count != vertex_count)
         fail(owner + " has " + std::to_string(vertex_count) + " vertices, and " + name + " " +
-             std::to_string(cache.vertex_count) + "; a cache has to be made of the same mesh");
+             std::to_string(cache.vertex_count) + "; a cache must belong to the same mesh");
     if (cache.samples == nullptr || cache.samples->empty() || cache.samples->size() % vertex_count != 0)
         fail(owner + ": " + name + " has no samples, or the last one is not complete");
     const auto bad = std::find_if(cache.samples->begin(), cache.samples->end(),

@@ -39,10 +39,10 @@ std::span<const std::byte> checked(std::span<const std::byte> bytes, const std::
     Header header;
     if (bytes.size() >= sizeof header) std::memcpy(&header, bytes.data(), sizeof header);
     if (bytes.size() < sizeof header || header.magic != kMagic)
-        throw Error(ErrorCode::WrongFormat, name + " is no saved state of a simulation");
+        throw Error(ErrorCode::WrongFormat, name + " is not a saved state of a simulation");
     if (header.version != kVersion)
         throw Error(ErrorCode::UnsupportedVersion, name + " has version " + std::to_string(header.version) +
-                                                       " of saved states, and this library reads version " +
+                                                       " of saved states, but this library reads version " +
                                                        std::to_string(kVersion) +
                                                        "; save the simulation again");
     const std::span<const std::byte> body = bytes.subspan(sizeof header);
@@ -50,23 +50,24 @@ std::span<const std::byte> checked(std::span<const std::byte> bytes, const std::
         throw Error(ErrorCode::Damaged, name + " should have " + std::to_string(header.byte_count) +
                                             " bytes after its header and has " + std::to_string(body.size()));
     if (XXH64(body.data(), body.size(), 0) != header.checksum)
-        throw Error(ErrorCode::Damaged, name + " was changed since it was saved: its checksum does not fit");
+        throw Error(ErrorCode::Damaged,
+                    name + " was changed since it was saved: its checksum does not match");
     return body;
 }
 
 void require_same(const StateFingerprint& saved, const StateFingerprint& here, const std::string& name) {
     const auto refuse = [&](const std::string& what) {
-        throw Error(ErrorCode::InvalidOptions, name + " is of a simulation with " + what +
-                                                   "; it goes on only in one that was made of the same");
+        throw Error(ErrorCode::InvalidOptions, name + " belongs to a simulation with " + what +
+                                                   "; restore it in a simulation that was made of the same");
     };
     if (saved.deformable != here.deformable)
-        refuse("another deformable, or one with other filters or that began elsewhere");
+        refuse("another deformable, other filters or other initial positions");
     if (saved.colliders.size() != here.colliders.size())
         refuse(std::to_string(saved.colliders.size()) + " colliders, not " +
                std::to_string(here.colliders.size()));
     for (std::size_t c = 0; c < saved.colliders.size(); ++c)
         if (saved.colliders[c] != here.colliders[c])
-            refuse("another map, scale or start of collider " + std::to_string(c));
+            refuse("another map, scale or initial pose of collider " + std::to_string(c));
     if (saved.options != here.options) refuse("other options");
 }
 
