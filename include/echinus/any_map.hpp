@@ -9,7 +9,7 @@
 
 ECHINUS_EXPORT_BEGIN
 
-/// Queries of a map whose kind is known at run time only; they are those of its kind.
+/// Queries of a map whose kind is known only at run time. They forward to the queries of that kind.
 namespace echinus {
 
 using AnyMap = std::variant<DistanceMap, ExactMap>;

@@ -9,7 +9,7 @@ ECHINUS_EXPORT_BEGIN
 
 namespace echinus {
 
-/// Which part of a triangle the nearest point lies on.
+/// The part of a triangle on which the nearest point lies.
 enum class Feature : std::uint8_t {
     Unknown, ///< no contact, or a distance map, which does not know its mesh
     Face,
@@ -17,27 +17,28 @@ enum class Feature : std::uint8_t {
     Vertex,
 };
 
-/// A query's answer for one particle: inside or not, how deep, which way out. The same for every kind of map.
+/// The answer of a query for one particle: whether it is inside, how deep, and where the push-out leads. It
+/// is the same for every kind of map.
 ///
-/// The push-out moves the particle to `point`. For a particle that is outside and farther than the margin, or
-/// not finite, the members keep their defaults (not inside, depth 0, normal 0, face -1), and `point` is the
+/// The push-out moves the particle to `point`. For a particle that is outside beyond the margin, or not
+/// finite, the members keep their defaults (not inside, depth 0, normal 0, face -1), and `point` is the
 /// particle itself.
 struct Contact {
     static constexpr std::int32_t kUnknownFace = -1;
 
-    Vec3f point;   ///< the point of the surface that the push-out leads to, in the frame of the query
-    Vec3f normal;  ///< unit normal of the surface at `point`, out of the solid; 0 when there is no contact
-    float depth{}; ///< distance from the particle to `point`: positive inside, negative outside, 0 for no
-                   ///< contact
+    Vec3f point;   ///< the point of the surface to which the push-out leads, in the frame of the query
+    Vec3f normal;  ///< outward unit normal of the surface at `point`; 0 without a contact
+    float depth{}; ///< distance from the particle to `point`: positive inside, negative outside, 0 without
+                   ///< a contact
     std::int32_t face = kUnknownFace; ///< the face of the mesh that contains `point`, if the map knows it
     bool inside = false;
-    /// False where the mesh is open and the generalised winding number is near a half, so that `inside`
-    /// depends on how one would close the holes (kCertainMargin in exact_map.hpp). Always true with a
-    /// distance map, which does not judge its answers.
+    /// False where the mesh is open and the generalised winding number is near one half, so that `inside`
+    /// depends on how the holes would be closed (kCertainMargin in exact_map.hpp). It is always true with a
+    /// distance map, which does not assess its answers.
     bool certain = true;
     Feature feature = Feature::Unknown; ///< the part of the face that is nearest
 
-    /// Inside, or outside within the margin.
+    /// Is there a contact? The particle is then inside, or outside within the margin.
     bool found() const { return inside || normal != Vec3f{}; }
 };
 

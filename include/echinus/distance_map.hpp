@@ -15,28 +15,28 @@
 
 ECHINUS_EXPORT_BEGIN
 
-/// The paper's map: around the centre C of the model's bounding sphere a grid of directions, and for each
-/// direction the sorted distances of all points where its ray meets the surface (Vogiannou et al., "Distance
-/// Maps for Collision Detection of Deformable Models", section 2). A sampled map: near silhouettes and
-/// between samples it can be wrong; docs/reproduction.md has the rates.
+/// The paper's map. It has a grid of directions around the centre C of the model's bounding sphere, and for
+/// each direction the sorted distances of all points where its ray meets the surface (Vogiannou et al.,
+/// "Distance Maps for Collision Detection of Deformable Models", section 2). Since the map is sampled, it can
+/// be wrong near silhouettes and between samples; docs/reproduction.md has the error rates.
 ///
-/// All points are in the frame and unit of the mesh that the map was built from ("local").
+/// All points are in the frame and unit of the mesh from which the map was built ("local").
 namespace echinus {
 
 /// The treatment of mesh vertices that linear interpolation between samples misses (the paper's figure 1b).
 enum class VertexCorrection : std::uint8_t {
     None,  ///< entries are the exact crossings
-    Paper, ///< the four samples around a vertex are increased by the missing distance, on every layer
-    /// Layers where the ray leaves the solid are increased, layers where it enters are decreased, so that the
-    /// map errs on the side of the solid on both.
+    Paper, ///< the four samples around a vertex are increased by the missing distance, in every layer
+    /// Layers where the ray leaves the solid are increased, and layers where it enters are decreased, so that
+    /// both errors enlarge the solid.
     Signed,
 };
 
-/// How one entry is stored.
+/// The format in which an entry is stored.
 enum class EntryFormat : std::uint8_t {
     Float32,
-    Unorm16, ///< half the bytes: steps of 1/65535 of what the grid allows; off by at most R / 131070 = 7.6e-6
-             ///< R, on octahedral and ellipsoidal grids sqrt(3) times as much
+    Unorm16, ///< half the bytes: steps of 1/65535 of the largest entry; the error is at most R / 131070
+             ///< = 7.6e-6 R, on octahedral and ellipsoidal grids sqrt(3) times as much
 };
 
 struct DistanceMapOptions {
@@ -45,7 +45,7 @@ struct DistanceMapOptions {
     static constexpr std::uint32_t kMinDivisions = 4;
     static constexpr std::uint32_t kMaxDivisions = 4096;
 
-    DirectionGrid grid = DirectionGrid::Spherical; ///< decides which of the counts below are used
+    DirectionGrid grid = DirectionGrid::Spherical; ///< decides which of the numbers below are used
     /// Spherical and ellipsoidal: samples of phi; memory and build time grow with the product of the two.
     std::uint32_t longitude_count = 200;
     /// Spherical and ellipsoidal: samples of theta; doubling both divides the share of wrong signs by 2.5.
@@ -57,9 +57,9 @@ struct DistanceMapOptions {
     VertexCorrection correction =
         VertexCorrection::Signed;                    ///< None is unbiased; Signed misses fewer particles
     EntryFormat entry_format = EntryFormat::Float32; ///< Unorm16 halves the entries
-    /// Spherical and ellipsoidal: samples crowd at the poles; put the poles where the detail is.
+    /// Spherical and ellipsoidal: samples crowd at the poles, so put the poles where the detail is.
     PoleAxis pole_axis = PoleAxis::Z;
-    CentreChoice centre = CentreChoice::BoundingSphere; ///< the paper's; Search: five times the build time
+    CentreChoice centre = CentreChoice::BoundingSphere; ///< the paper's; Search takes five times as long
     unsigned thread_count = 0; ///< 0: all cores. The bytes of the map do not depend on it.
 };
 
@@ -67,19 +67,19 @@ struct DistanceMapOptions {
 struct DistanceMapStatistics {
     std::uint32_t face_count = 0; ///< of the mesh
     std::uint32_t dropped_faces =
-        0; ///< faces with two corners on one point of the lattice; they have no area there
+        0; ///< faces with two corners at one point of the lattice, where they have no area
     std::uint32_t max_entries = 0;       ///< largest number of entries of one direction
     std::uint32_t corrected_entries = 0; ///< entries moved by the vertex correction
     std::uint32_t clamped_entries = 0;   ///< corrections cut short at 0, R or a neighbouring entry
-    /// Share of directions whose number of entries has the wrong parity for the centre: holes seen from it. 0
-    /// when the mesh is closed.
+    /// Share of directions whose number of entries has the wrong parity for the centre, because of holes seen
+    /// from there. It is 0 for a closed mesh.
     float wrong_parity_share = 0;
 };
 
-/// A map as plain arrays, wherever they lie: in a DistanceMap, in a mapped file, in JavaScript's memory. Owns
-/// nothing, copies cheaply, and is what all queries take. Invariants (validate() in src/distance_map checks
-/// them, of untrusted bytes and of what a build made): entry_offsets ascends from 0 to the number of entries;
-/// the entries of a direction ascend within [0, largest_entry()].
+/// A map as plain arrays, wherever they are stored: in a DistanceMap, in a mapped file, or in JavaScript's
+/// memory. All queries take it. It owns nothing and is cheap to copy. Invariants (validate() in
+/// src/distance_map checks them, of untrusted bytes and of what a build made): entry_offsets ascends from 0
+/// to the number of entries; the entries of a direction ascend within [0, largest_entry()].
 struct DistanceMapView {
     Vec3f centre;     ///< C, local
     float radius = 0; ///< R: every vertex of the mesh lies within R of C
@@ -88,8 +88,8 @@ struct DistanceMapView {
     std::uint32_t colatitude_count = 0; ///< the same
     std::uint32_t divisions = 0;        ///< octahedral and cube; 0 in other maps
     PoleAxis pole_axis = PoleAxis::Z;   ///< spherical and ellipsoidal
-    /// Ellipsoidal: by what x, y and z are multiplied before a direction's longitude and colatitude are
-    /// taken, each within [1/64, 1]. 1 in other maps.
+    /// Ellipsoidal: the factors of x, y and z that are applied before a direction's longitude and colatitude
+    /// are computed, each within [1/64, 1]. They are 1 in other maps.
     Vec3f scale{1, 1, 1};
     EntryFormat entry_format = EntryFormat::Float32;
     VertexCorrection correction = VertexCorrection::None;
@@ -103,48 +103,49 @@ struct DistanceMapView {
     std::span<const float> entries_float32;
     std::span<const std::uint16_t>
         entries_unorm16; ///< [entry_count] the same * 65535 / largest_entry(), or empty
-    Vec3d origin{};      ///< TriangleMesh::origin: where the local frame begins. Queries do not look at it
+    Vec3d origin{};      ///< TriangleMesh::origin: the origin of the local frame. Queries ignore it
 
     std::size_t direction_count() const;
     /// R; octahedral: a little more than sqrt(3) R, the largest L1 radius in the bounding sphere;
     /// ellipsoidal: R, or a little more than sqrt(3) times the smallest scale times R where that is less.
     float largest_entry() const;
     std::size_t entry_count() const { return entry_offsets.empty() ? 0 : entry_offsets.back(); }
-    /// All that a query reads.
+    /// The size of all arrays that a query reads.
     std::size_t byte_count() const {
         return entry_offsets.size_bytes() + entries_float32.size_bytes() + entries_unorm16.size_bytes();
     }
 };
 
-/// A distance map that owns its arrays, or keeps alive the file that they lie in. Immutable; copies share the
-/// arrays. Any number of threads may query one map.
+/// A distance map that owns its arrays, or keeps alive the file that contains them. It is immutable, and
+/// copies share the arrays. Any number of threads may query one map.
 class DistanceMap {
   public:
-    /// Builds the map on all cores; same mesh and options, same bytes, whatever the number of threads.
-    /// Time O(faces + crossings + directions).
+    /// Builds the map on all cores. The same mesh and options give the same bytes for any number of threads.
+    /// The time is O(faces + crossings + directions).
     /// @param mesh  closed; behind a hole answers are wrong, and wrong_parity_share is the share of
-    /// directions that see one. VertexCorrection::Signed also requires faces that are counter-clockwise seen
-    /// from outside. A solid so flat or thin that no ray meets it gives a map without entries, for which
-    /// everything is outside
+    /// directions that see one. VertexCorrection::Signed also requires faces that are counter-clockwise
+    /// seen from outside. A solid that is so flat or thin that no ray meets it gives a map without
+    /// entries, for which everything is outside
     /// @throws Error InvalidMesh as inspect() does, or when the bounding radius lies outside [1e-15, 1e15];
     /// InvalidOptions when a count that the grid uses lies outside the bounds above
     static DistanceMap build(const TriangleMesh& mesh, const DistanceMapOptions& options = {});
 
-    /// A map of arrays that already exist. They belong to `storage`, which the map keeps alive. The file
-    /// reader uses this.
+    /// Makes a map of existing arrays. They belong to `storage`, which the map keeps alive. The file reader
+    /// uses this constructor.
     /// @pre the invariants of DistanceMapView hold
     DistanceMap(const DistanceMapView& view, const DistanceMapStatistics& statistics,
                 std::uint64_t source_hash, std::shared_ptr<const void> storage);
 
-    /// A map converts to its view, so it can be passed to every query. A view must not outlive its map's
-    /// arrays: a temporary map therefore gives none, and has to be named first.
+    /// A map converts to its view, so it can be passed to every query. Since a view must not outlive its
+    /// map's arrays, a temporary map does not convert: store it in a variable first.
     const DistanceMapView& view() const& { return view_; }
     const DistanceMapView& view() const&& = delete;
     operator const DistanceMapView&() const& { return view_; }
     operator const DistanceMapView&() const&& = delete;
 
     const DistanceMapStatistics& statistics() const { return statistics_; }
-    /// Identifies the mesh and the options that the map was built from; thread_count does not enter.
+    /// Identifies the mesh and the options that the map was built from; it does not depend on
+    /// thread_count.
     std::uint64_t source_hash() const { return source_hash_; }
 
   private:
@@ -154,56 +155,59 @@ class DistanceMap {
     std::shared_ptr<const void> storage_;
 };
 
-// ---- Queries: paper section 2.2. noexcept, any number of threads. On one thread they do not allocate
+// ---- Queries: paper section 2.2. They are noexcept and may run on any number of threads. On one thread they
+// do not allocate
 //
-// NaN or infinity in a point: outside, no contact. The centre itself: centre_inside; its push-out follows the
-// direction longitude 0, colatitude 0. Points on the seam (longitude 0 = 2 pi) and at the poles are ordinary.
+// A point with NaN or infinity is outside and has no contact. The centre is inside if centre_inside is true;
+// its push-out follows the direction of longitude 0 and colatitude 0. Points on the seam (longitude 0 = 2 pi)
+// and at the poles need no special treatment.
 
-/// Is the particle inside? Points outside the bounding sphere are not. Where a direction has no entries, as
-/// in a hole of an open mesh, the whole ray up to R is as the centre is.
+/// Is the particle inside? Points outside the bounding sphere are not. If a direction has no entries, as in a
+/// hole of an open mesh, the whole ray up to R has the same answer as the centre.
 bool contains(const DistanceMapView& map, Vec3f point_local) noexcept;
 
-/// Inside?, how deep along the ray, and where the push-out leads: the interpolated entry nearest to |d| on
-/// the particle's own ray. Depth is radial: it is at least the true depth to the map's surface and often
-/// more. The normal is that of the map's surface there, so that (point, normal) is the contact plane; it is
-/// not parallel to the push-out.
+/// Finds whether the particle is inside, how deep along its ray, and where the push-out leads: to the
+/// interpolated entry nearest to |d| on the particle's own ray. The depth is radial, so it is at least the
+/// true depth to the map's surface and often greater. The normal is that of the map's surface there, so that
+/// (point, normal) is the contact plane; it is not parallel to the push-out.
 ///
-/// @param margin  particles outside, at most this far from the nearest entry along their ray, get a contact
-///                too, with negative depth. Not negative; NaN counts as 0.
-/// Where the solid has no far end along a ray, as in a hole of an open mesh, the bounding sphere is its end.
+/// @param margin  particles outside that are at most this far from the nearest entry along their ray also get
+/// a contact, with negative depth. Not negative; NaN counts as 0.
+///
+/// If the solid has no far end along a ray, as in a hole of an open mesh, the bounding sphere is its end.
 Contact contact(const DistanceMapView& map, Vec3f point_local, float margin = 0) noexcept;
 
-/// contains() for many points, by vector instructions (instruction_set.hpp): the same bits, several times
-/// faster.
+/// contains() for many points, with vector instructions (instruction_set.hpp). The answers are the same, and
+/// it is several times as fast.
 /// @param points_local  [n]
-/// @param inside        [n] out: 1 inside, 0 outside. Does not overlap points_local.
-/// @param thread_count  0: all cores. From 32 768 points on; the answers do not depend on it
+/// @param inside        [n] out: 1 inside, 0 outside. Must not overlap points_local.
+/// @param thread_count  0: all cores. Used for 32 768 points or more; the answers do not depend on it
 /// @pre points_local.size() == inside.size()
 void contains_batch(const DistanceMapView& map, StridedSpan<const Vec3f> points_local,
                     std::span<std::uint8_t> inside, unsigned thread_count = 1) noexcept;
 
-/// contact() for many points, in the same way.
+/// contact() for many points, also with vector instructions.
 /// @param points_local  [n]
-/// @param contacts      [n] out. Does not overlap points_local.
+/// @param contacts      [n] out. Must not overlap points_local.
 /// @pre points_local.size() == contacts.size()
 void contacts_batch(const DistanceMapView& map, StridedSpan<const Vec3f> points_local, float margin,
                     std::span<Contact> contacts, unsigned thread_count = 1) noexcept;
 
-// ---- Looking at a map
-
-/// How many directions have 0, 1, 2 ... entries.
+// ---- Inspecting a map
+/// The numbers of directions with 0, 1, 2 ... entries.
 std::vector<std::size_t> entry_histogram(const DistanceMapView& map);
 
-/// How many of the four samples around a point, or three on an octahedron, entered the interpolation (paper
-/// section 2.2: "rarely ... less than 3"). 1 to 4, or 0 where no query looks: outside the sphere, not finite.
+/// The number of samples around a point that entered the interpolation, of four, or of three on an octahedron
+/// (paper section 2.2: "rarely ... less than 3"). It is 1 to 4, or 0 for points outside the sphere or not
+/// finite, for which no query interpolates.
 int usable_sample_count(const DistanceMapView& map, Vec3f point_local) noexcept;
 
 /// The surface of the map (figures 2 and 3): where four neighbouring directions have the same number of
-/// entries, each layer is a quadrilateral, cut into two triangles; on an octahedron, where three have, a
-/// triangle.
+/// entries, each layer is a quadrilateral that is divided into two triangles; on an octahedron, three such
+/// directions give a triangle.
 struct MapSurface {
-    TriangleMesh mesh;                ///< local frame; wound so that faces look out of the solid
-    std::vector<std::uint32_t> layer; ///< [face_count] 0 for the entries nearest to the centre
+    TriangleMesh mesh;                ///< local frame; faces point out of the solid
+    std::vector<std::uint32_t> layer; ///< [face_count] 0 for the layer nearest to the centre
 };
 MapSurface reconstruct_surface(const DistanceMapView& map);
 

@@ -1,7 +1,7 @@
 #pragma once
 
-/// All of echinus::core. The mesh readers (mesh_io.hpp), scenes (echinus_scene/scene.hpp) and pictures
-/// (echinus_render/render.hpp) are libraries of their own, with headers of their own.
+/// Includes all of echinus::core. The mesh readers (mesh_io.hpp), scenes (echinus_scene/scene.hpp) and
+/// rendering (echinus_render/render.hpp) are separate libraries with separate headers.
 
 #include <echinus/any_map.hpp>
 #include <echinus/collider.hpp>

@@ -9,23 +9,24 @@ ECHINUS_EXPORT_BEGIN
 
 namespace echinus {
 
-/// The kind of error, for programs; the sentence in Error::what() is for people.
+/// The kind of an error, for programs; the message in Error::what() is for people.
 enum class ErrorCode {
     Unreadable,         ///< a file does not exist, is a directory, or cannot be read
     Unwritable,         ///< a file cannot be written: permission, missing folder, full disk
-    WrongFormat,        ///< the bytes are not of the format that the name or the reader expects
+    WrongFormat,        ///< the bytes do not have the format that the name or the reader expects
     Damaged,            ///< the right format, but truncated or self-contradictory
     UnsupportedVersion, ///< a map file of a version that this library does not read
     InvalidMesh,        ///< no faces, a coordinate that is not finite, an index out of range
     InvalidOptions,     ///< an option outside the range that its declaration states
-    InvalidScene,       ///< a scene with an unknown key, a missing one or a value out of range
+    InvalidScene,       ///< a scene with an unknown key, a missing key or a value out of range
     Diverged,           ///< a simulation whose positions are no longer finite or have left all bounds
 };
 
-/// Thrown by the offline calls (reading, building, loading, simulating), never by per-particle queries.
+/// The exception of the offline calls (reading, building, loading, simulating). Per-particle queries do not
+/// throw.
 ///
-/// what() is one sentence without a newline that names the file, face, byte or frame, what was found and what
-/// was expected.
+/// what() is one sentence without a newline. It names the file, face, byte or frame, the value that was found
+/// and the one that was expected.
 class Error : public std::runtime_error {
   public:
     Error(ErrorCode code, const std::string& sentence) : std::runtime_error(sentence), code_(code) {}

@@ -10,17 +10,17 @@
 
 ECHINUS_EXPORT_BEGIN
 
-/// The arrays of an exact map (exact_map.hpp), for programs that inspect or store one. To ask queries, you
-/// need nothing from this header.
+/// The arrays of an exact map (exact_map.hpp), for programs that inspect or store maps. Queries need nothing
+/// from this header.
 namespace echinus {
 
-/// Which places are inside, by the winding number of the surface around them. The rules differ only where
-/// parts of the surface overlap, are nested, inverted or doubled.
+/// The rule by which the winding number of the surface around a point decides whether the point is inside.
+/// The rules differ only where parts of the surface overlap, are nested, inverted or doubled.
 enum class InsideRule : std::uint8_t {
-    /// Every winding number but 0: the union of parts that have the same orientation or do not overlap. Where
-    /// parts of opposite orientation overlap, their numbers cancel.
+    /// Every winding number except 0 is inside: the union of parts that have the same orientation or do not
+    /// overlap. Where parts of opposite orientation overlap, their numbers cancel.
     Nonzero,
-    Parity, ///< an odd winding number: a part within a part is a hole
+    Parity, ///< odd winding numbers are inside: a part within a part is a hole
 };
 
 /// Indices, in 16 bits where they fit. At most one of the two spans is used.
@@ -33,7 +33,7 @@ struct IndexArray {
     std::uint32_t operator[](std::size_t i) const { return wide.empty() ? narrow[i] : wide[i]; }
 };
 
-/// A radial interval of one cell in which surface lies, [lower, upper) in units of ExactMapView::kBandUnit
+/// A radial interval of one cell that contains surface, [lower, upper), in units of ExactMapView::kBandUnit
 /// lattice steps of the L1 norm |x| + |y| + |z|.
 struct Band {
     std::uint16_t lower, upper;
@@ -55,9 +55,10 @@ struct TreeNode {
 };
 static_assert(sizeof(TreeNode) == 128);
 
-/// The triangles below each child of the TreeNode of the same number, as seen from afar: moments of their
-/// area vectors about a centre, for the winding number of an open surface. In lattice steps, divided by 4 pi.
-/// All 0 but the centre for a child that does not exist. src/exact_map/build/open_surface.hpp explains them.
+/// The far field of the triangles below each child of the TreeNode with the same index: moments of their area
+/// vectors about a centre, for the winding number of an open surface, in lattice steps, divided by 4 pi. For
+/// a child that does not exist everything except the centre is 0. src/exact_map/build/open_surface.hpp
+/// explains the moments.
 struct WindingNode {
     static constexpr std::size_t kWidth = TreeNode::kWidth;
 
@@ -65,38 +66,39 @@ struct WindingNode {
     double area[3][kWidth];    ///< sum of the area vectors
     double first[6][kWidth];   ///< coefficients of x^2, y^2, z^2, xy, xz, yz
     double second[7][kWidth];  ///< of x (x^2 - 3 z^2), y (y^2 - 3 z^2), ... see open_surface.cpp
-    double radius[kWidth];     ///< no corner is farther from the centre
+    double radius[kWidth];     ///< largest distance of a corner from the centre
     double spread[kWidth];     ///< integral of the squared distance from the centre
     double total_area[kWidth]; ///< sum of the areas
 };
 static_assert(sizeof(WindingNode) == 22 * 8 * sizeof(double));
 
-/// Triangles in a tree, for the sum of the solid angles at which a place sees them.
+/// Triangles in a tree, for the sum of the solid angles that they subtend at a point.
 struct WindingTree {
     std::span<const TreeNode> nodes;
     std::span<const WindingNode> moments; ///< [nodes.size()]
-    IndexArray corners;                   ///< [3 triangle_count] vertices of each, as the leaves want them
+    IndexArray corners; ///< [3 triangle_count] vertices of each triangle, in the order of the leaves
 
     std::size_t triangle_count() const { return corners.size() / 3; }
 };
 
-/// An edge of the surface's border: `multiplicity` more faces run from a to b than from b to a.
+/// A border edge of the surface: `multiplicity` more faces traverse it from a to b than from b to a.
 struct BorderEdge {
     std::uint32_t a, b; ///< vertices
     std::int32_t multiplicity;
 };
 static_assert(sizeof(BorderEdge) == 12);
 
-/// A map as plain arrays, wherever they lie, the argument of all queries. Owns nothing, copies cheaply.
-/// validate() in src/exact_map checks the invariants, of untrusted bytes and of what a build made.
+/// A map as plain arrays, wherever they are stored; the argument of all queries. It owns nothing and is cheap
+/// to copy. validate() in src/exact_map checks the invariants of untrusted bytes and of built maps.
 struct ExactMapView {
     static constexpr int kBandUnit = 16;
     static constexpr int kBoxUnit = 32;
-    /// In place of a gap's winding number: it is not constant there, because the surface is open.
+    /// In place of a gap's winding number: the number is not constant in the gap, because the surface is
+    /// open.
     static constexpr std::int16_t kUncertain = std::numeric_limits<std::int16_t>::min();
     /// In place of a gap's winding number: there is no gap, but a long band that was split in two. For a
-    /// particle in the lower half, crossings between the origin and the particle are counted, for one in the
-    /// upper half those beyond it.
+    /// particle in the lower half, crossings between the origin and the particle are counted; for one in the
+    /// upper half, those beyond the particle.
     static constexpr std::int16_t kSplit = kUncertain + 1;
 
     Vec3f centre;     ///< C, local
@@ -104,39 +106,40 @@ struct ExactMapView {
     std::uint32_t divisions = 0;
     InsideRule rule = InsideRule::Nonzero;
     std::span<const std::uint32_t> band_offsets; ///< [cell_count + 1]
-    /// [cell_count] The upper limit of each cell's last band, 0 where there is none. Most particles lie
-    /// beyond it, and their query ends there.
+    /// [cell_count] The upper limit of each cell's last band, or 0 without a band. Most particles lie beyond
+    /// it, and their query ends there.
     std::span<const std::uint16_t> outer_limits;
-    /// [band_count + 1] by cell, then outwards; the last is a sentinel. A band without faces separates two
-    /// gaps of an open surface.
+    /// [band_count + 1] The bands by cell, then outwards; the last one is a sentinel. A band without faces
+    /// separates two gaps of an open surface.
     std::span<const Band> bands;
     /// [band_count] Winding number of the gap between a band and the one below it, or kUncertain or kSplit.
     /// Beyond a cell's last band it is 0.
     std::span<const std::int16_t> winding_below;
     IndexArray references; ///< [reference_count] faces
-    /// [reference_count] Which of the 16 parts of its cell a face touches, one bit each
+    /// [reference_count] The parts of its cell that a face touches, one bit for each of 16
     /// (src/directions/octahedral_cells.hpp). A query tests only the faces of its own part.
     std::span<const std::uint16_t> reference_parts;
-    /// [vertex_count] on the lattice. Four bytes before the first are readable, so that a vector of four
-    /// numbers can load any vertex as its last three.
+    /// [vertex_count] The vertices on the lattice. Four bytes before the first one are readable, so that a
+    /// vector of four numbers can load any vertex as its last three.
     std::span<const Vec3<std::int32_t>> vertices;
     IndexArray corners;                 ///< [3 face_count] vertices of each face
-    IndexArray face_numbers;            ///< [face_count] each face's number in the mesh
+    IndexArray face_numbers;            ///< [face_count] each face's index in the mesh
     std::span<const TreeNode> nodes;    ///< the first is the root
-    std::span<const BorderEdge> border; ///< empty when the surface is closed
-    /// Queries of an open surface sum these: its faces, or caps that close it, where they are far fewer
-    /// (src/exact_map/query/winding.cpp). Empty when the surface is closed. Not in map files, as it follows
-    /// from the faces.
+    std::span<const BorderEdge> border; ///< empty for a closed surface
+    /// The triangles over which queries of an open surface sum: its faces, or caps that close it if these are
+    /// far fewer (src/exact_map/query/winding.cpp). It is empty for a closed surface, and not stored in map
+    /// files, since it follows from the faces.
     WindingTree winding_tree;
     bool winding_tree_has_caps = false;
-    /// There is a border, and at each of its edges two more faces run one way than the other, as where
-    /// neighbours disagree about the outside: the surface has no hole. Not in map files either.
+    /// The surface has a border, and at each border edge two more faces run in one direction than in the
+    /// other, as where neighbours disagree about the outside: the surface has no hole. This flag is not
+    /// stored in map files either.
     bool neighbours_disagree = false;
-    Vec3d origin{}; ///< TriangleMesh::origin: where the local frame begins. Queries do not look at it
+    Vec3d origin{}; ///< TriangleMesh::origin: the origin of the local frame. Queries ignore it
 
     std::size_t cell_count() const { return std::size_t{8} * divisions * divisions; }
     std::size_t face_count() const { return face_numbers.size(); }
-    /// The bytes of all arrays that queries read, mesh and tree included.
+    /// The size of all arrays that queries read, including mesh and tree.
     std::size_t byte_count() const {
         return band_offsets.size_bytes() + outer_limits.size_bytes() + bands.size_bytes() +
                winding_below.size_bytes() + references.size_bytes() + reference_parts.size_bytes() +

@@ -10,7 +10,7 @@
 ECHINUS_EXPORT_BEGIN
 
 /// Points, spheres, poses and strided views: the value types that all other headers use.
-/// The frame is right-handed. Lengths are in the caller's unit.
+/// Frames are right-handed. Lengths are in the caller's unit.
 namespace echinus {
 
 template <typename T>
@@ -43,7 +43,7 @@ struct Vec3 {
 using Vec3f = Vec3<float>;
 using Vec3d = Vec3<double>;
 
-// The order of the additions below is part of the guarantee of equal bits on every machine.
+// The order of the additions below is part of the guarantee of bit-identical results on every machine.
 template <typename T>
 constexpr T dot(const Vec3<T>& a, const Vec3<T>& b) {
     return a.x * b.x + a.y * b.y + a.z * b.z;
@@ -61,8 +61,9 @@ bool is_finite(const Vec3<T>& a) {
     return std::isfinite(a.x) && std::isfinite(a.y) && std::isfinite(a.z);
 }
 
-/// A point in the frame of a file, relative to the origin of a mesh or map (TriangleMesh::origin). Rounded to
-/// float last, so that nothing is lost far from where the file's frame begins.
+/// Converts a point in the frame of a file to one relative to the origin of a mesh or map
+/// (TriangleMesh::origin). It is rounded to float last, so that nothing is lost far from the origin of the
+/// file's frame.
 inline Vec3f to_local(const Vec3d& point, const Vec3d& origin) {
     return Vec3f(point - origin);
 }
@@ -73,30 +74,31 @@ struct Sphere {
     double radius = 0;
 };
 
-/// A rotation as a unit quaternion w + xi + yj + zk. Nothing checks the length: a quaternion of another
-/// length is no rotation, and what is computed with it is not meaningful. normalised() mends rounding.
+/// A rotation as a unit quaternion w + xi + yj + zk. The length is not checked: a quaternion of another
+/// length is not a rotation, and results computed with it are meaningless. normalised() corrects rounding
+/// errors.
 struct Rotation {
     double w = 1, x = 0, y = 0, z = 0;
 
-    /// Turns by `angle_rad` about `axis` (any length but zero), counter-clockwise seen against the axis.
-    /// Both finite. The same bits on every machine.
+    /// The rotation by `angle_rad` about `axis` (of any length except 0), counter-clockwise seen from the tip
+    /// of the axis. Both must be finite. The result is bit-identical on every machine.
     static Rotation about(const Vec3d& axis, double angle_rad);
 
     Vec3d apply(const Vec3d& v) const;
-    /// The axis, as long as the angle in radians, which is at most pi: about(vector, length(vector)) turns
-    /// the same way. 0 where nothing turns. The same bits on every machine.
+    /// The axis, whose length is the angle in radians, at most pi: about(vector, length(vector)) is the same
+    /// rotation. It is 0 for the identity. The result is bit-identical on every machine.
     Vec3d vector() const;
     Rotation inverse() const { return {w, -x, -y, -z}; }
     Rotation normalised() const;
 
     friend constexpr bool operator==(const Rotation&, const Rotation&) = default;
 };
-/// First `b`, then `a`.
+/// The rotation by `b` followed by that by `a`.
 Rotation operator*(const Rotation& a, const Rotation& b);
 
-/// A pose: rotate, then translate. The translation is double, so that a collider may stand far from the
-/// origin.
-/// @pre rotation is of unit length, to rounding
+/// A pose: a rotation followed by a translation. The translation is in double, so that a collider may be far
+/// from the origin.
+/// @pre the rotation has unit length, up to rounding
 struct RigidTransform {
     Rotation rotation;
     Vec3d translation;
@@ -109,8 +111,8 @@ struct RigidTransform {
     friend constexpr bool operator==(const RigidTransform&, const RigidTransform&) = default;
 };
 
-/// A view of `size` values of type T that lie `stride` bytes apart, for instance the positions in an array of
-/// vertex structs. Owns nothing. A contiguous container of T converts to it.
+/// A view of `size` values of type T that are `stride` bytes apart, for instance the positions in an array of
+/// vertex structs. It owns nothing. A contiguous container of T converts to it.
 template <typename T>
 class StridedSpan {
     using Byte = std::conditional_t<std::is_const_v<T>, const std::byte, std::byte>;

@@ -14,23 +14,23 @@
 
 ECHINUS_EXPORT_BEGIN
 
-/// Map files (docs/file_format.md). A file is verified before use, in structure and in meaning, and then read
-/// in place.
+/// Map files (docs/file_format.md). The structure and the contents of a file are verified before use; the
+/// file is then read in place.
 namespace echinus {
 
-/// The versions that are read. Files are written in the older one wherever it will do: only maps with an
-/// origin (ExactMapView::origin) need the newer one, since an older reader would misplace them.
+/// The supported versions. Files are written in the older version if possible: only maps with an origin
+/// (ExactMapView::origin) need the newer version, since an older reader would misplace them.
 inline constexpr std::uint32_t kMapFileVersion = 2, kMapFileVersionWithoutOrigin = 1;
 
-/// Optional notes beside a map. They are not part of the map: without notes, the same map gives the same
-/// bytes.
+/// Optional notes in the file of a map. They are not part of the map: without notes, the same map gives the
+/// same bytes.
 struct MapFileNotes {
-    std::optional<double> build_milliseconds; ///< how long the build took on the machine that did it
+    std::optional<double> build_milliseconds; ///< time of the build on the machine that made the map
 };
 
-/// Writes to a temporary name beside the target and renames it: a failure leaves no partial file and keeps
-/// the old one, and programs that have the old one mapped keep it. The same map and notes give the same
-/// bytes.
+/// Writes a map file. It is written under a temporary name in the target's folder and then renamed: a failure
+/// leaves no partial file and keeps the old one, and programs that have mapped the old file keep it. The same
+/// map and notes give the same bytes.
 /// @throws Error Unwritable; also when the map exceeds the 2 GiB limit of a map file
 void save(const AnyMap& map, const std::filesystem::path& path, const MapFileNotes& notes = {});
 
@@ -38,17 +38,17 @@ void save(const AnyMap& map, const std::filesystem::path& path, const MapFileNot
 /// @throws Error Unwritable when the map exceeds the 2 GiB limit of a map file
 std::vector<std::byte> serialise(const AnyMap& map, const MapFileNotes& notes = {});
 
-/// Maps the file into memory and reads it in place; the map keeps the mapping alive. Cost: one pass over the
-/// arrays to check them. The file may be replaced or removed while it is mapped, as save() does, but must not
-/// be overwritten in place.
-/// @throws Error Unreadable, WrongFormat (not a map file), UnsupportedVersion or Damaged; the sentence begins
+/// Loads a map file. The file is mapped into memory and read in place; the map keeps the mapping alive. The
+/// cost is one pass over the arrays to check them. While it is mapped, the file may be replaced, as save()
+/// does, or removed, but must not be overwritten in place.
+/// @throws Error Unreadable, WrongFormat (not a map file), UnsupportedVersion or Damaged; the message begins
 /// with the path
 AnyMap load_map(const std::filesystem::path& path);
 
-/// The same from bytes in memory, which must stay unchanged as long as `storage` lives; the map keeps it
+/// Loads a map from bytes in memory, which must stay unchanged as long as `storage` exists; the map keeps it
 /// alive.
 /// @pre bytes.data() is a multiple of 8
-/// @throws Error as above; the sentence begins with `name`
+/// @throws Error as above; the message begins with `name`
 AnyMap load_map(std::span<const std::byte> bytes, std::shared_ptr<const void> storage,
                 const std::string& name);
 
@@ -61,7 +61,7 @@ ExactMap load_exact_map(const std::filesystem::path& path);
 /// @throws Error as load_map(), except for faults in the map itself, which is not read
 MapFileNotes load_map_file_notes(const std::filesystem::path& path);
 
-/// Does the file begin like a map file? False also when it cannot be read.
+/// Does the file begin like a map file? The result is also false if the file cannot be read.
 bool is_map_file(const std::filesystem::path& path) noexcept;
 
 } // namespace echinus

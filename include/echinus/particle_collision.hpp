@@ -12,32 +12,33 @@
 
 ECHINUS_EXPORT_BEGIN
 
-/// Collision for a solver of one's own (examples/11_own_solver, docs/own_solver.md).
+/// Collision of particles for your own solver (examples/11_own_solver, docs/own_solver.md).
 namespace echinus {
 
 struct ParticleCollisionOptions {
-    /// Coulomb's coefficient; 0 is ice. Motion along a surface is shortened by this times the length of the
-    /// push out of it, and never reversed.
+    /// Coulomb's coefficient; 0 is no friction. The tangential motion is reduced by the coefficient times the
+    /// length of the push-out, and is not reversed.
     double friction = 0.5;
-    /// Accept exact maps of open meshes. Nothing is promised for them: near a gap it is only estimated what
-    /// is inside, so particles get in there.
+    /// Accept exact maps of open meshes. Nothing is guaranteed for them: near a hole the inside is only
+    /// estimated, so particles may get in there.
     bool allow_open_colliders = false;
-    /// Threads that share a correct(); 0: all cores. The bits do not depend on it. More than one wait awake
-    /// while a call lasts, and need oneTBB.
+    /// Threads that share the work of correct(); 0 means all cores. The results do not depend on it, bit for
+    /// bit. More than one thread needs oneTBB; they spin while they wait during a call.
     unsigned thread_count = 1;
 };
 
-/// The particles of a solver after one of its steps, in world units and axes. None of the arrays overlap.
+/// The particles of a solver after one of its steps, in world units and axes. The arrays must not overlap.
 struct SolverStep {
-    std::span<const Vec3f> previous_positions; ///< [n] where the step began
-    std::span<Vec3f> positions;                ///< [n] in: where the solver has put them. Out: corrected
-    std::span<Vec3f> velocities{};             ///< [n] in and out, units per second; or none
-    /// [n] 1 / mass, in any unit; 0 for a pinned particle, which no collider pushes. None: all are pushed.
+    std::span<const Vec3f> previous_positions; ///< [n] at the start of the step
+    std::span<Vec3f> positions;                ///< [n] in: the solver's positions; out: corrected positions
+    std::span<Vec3f> velocities{};             ///< [n] in and out, units per second; or empty
+    /// [n] 1 / mass, in any unit; 0 for a pinned particle, which no collider pushes. If empty, all particles
+    /// are pushed.
     std::span<const float> inverse_masses{};
 };
 
-/// Keeps the particles of any solver out of models. After each step of the solver, correct() takes back what
-/// led a particle inside or through a model, and leaves the solver all else.
+/// Keeps the particles of any solver out of models. After each step of the solver, correct() moves particles
+/// that entered or crossed a model back out; everything else remains the solver's.
 ///
 ///     ParticleCollision collision({{.map = map}}, 0.01);
 ///     for (;;) {
@@ -47,27 +48,28 @@ struct SolverStep {
 ///         collision.correct({previous, positions, velocities}, seconds);
 ///     }
 ///
-/// Between exact maps a particle that began a step outside ends it outside and on its side of every surface,
-/// however fast it or the models moved and however thin they are: it is swept from where the step began, as
-/// seen from each collider, which goes evenly from its pose before to its pose now (Collider's sweep()).
-/// Exceptions, which lost_count() counts, are particles between colliders that leave them less room than the
-/// thickness, and gaps of open meshes. A particle that begins inside is put to the nearest surface point.
-/// Distance maps and custom maps are not swept: they push out what ended inside.
+/// With exact maps a particle that begins a step outside ends it outside and on the same side of every
+/// surface, however fast it or the models move and however thin they are: it is swept from its position at
+/// the start of the step in the frame of each collider, which moves from its previous pose to its present one
+/// (see sweep() of a Collider). The exceptions, which lost_count() counts, are particles between colliders
+/// that leave less room than the thickness, and holes of open meshes. A particle that begins inside is moved
+/// to the nearest surface point. With distance maps and custom maps particles are not swept, but pushed out
+/// if they end a step inside.
 ///
-/// Between steps it keeps what it knows of the surfaces around each particle, so that those that hardly move
-/// need no query; this is a cache, and where each particle was free last. Copies are independent. Different
-/// objects may be used by different threads at a time, one object by one.
+/// Between steps the object remembers the surfaces around each particle, so that particles that hardly move
+/// need no query, and the last free position of each particle. Copies are independent. Different threads may
+/// use different objects at the same time, but only one thread may use an object at a time.
 class ParticleCollision {
   public:
-    /// A particle whose position is not finite, or farther than this from the origin along an axis, has
-    /// exploded, units.
+    /// A particle whose position is not finite, or farther than this many units from the origin along an
+    /// axis, counts as exploded.
     static constexpr float kFarthest = 1e12F;
 
-    /// @param colliders  of any kind of map, where they stand; their velocities do not count, but have to be
-    /// finite
-    /// @param thickness  the distance that particles keep from the surface, units; 0 to 1e9. At least 16
-    ///                   steps of a map's lattice (2^-19 of its radius) are kept. A particle that is swept
-    ///                   to a surface may be nearer until the next step. docs/thickness.md
+    /// @param colliders  with any kind of map, in their initial poses; their velocities are ignored, but must
+    /// be finite
+    /// @param thickness  the distance in units that particles keep from the surface, 0 to 1e9; at least 16
+    ///                   steps of the map's lattice (2^-19 of its radius). A particle that is swept to a
+    ///                   surface may be closer until the next step. See docs/thickness.md
     /// @throws Error InvalidOptions
     ParticleCollision(std::vector<Collider> colliders, double thickness,
                       const ParticleCollisionOptions& options = {});
@@ -77,44 +79,47 @@ class ParticleCollision {
     ParticleCollision(ParticleCollision&& other) noexcept;
     ParticleCollision& operator=(ParticleCollision&& other) noexcept;
 
-    /// The solver's next step leads a collider there, evenly and the shorter way round; then it rests.
+    /// Moves a collider to a pose during the solver's next step, at constant velocity and rotating along the
+    /// shorter arc. Then it stops.
     /// @pre collider_index < colliders().size()
-    /// @throws Error InvalidOptions for a pose that is not finite or a rotation off unit length by over 1e-4
+    /// @throws Error InvalidOptions for a pose that is not finite, or a rotation whose length differs from 1
+    /// by more than 1e-4
     void set_collider_pose(std::size_t collider_index, const RigidTransform& pose);
-    /// The collider is there from now on, as after a cut in a film: nothing is swept on the way, and the next
-    /// step begins anew. The same otherwise.
+    /// Places a collider at a pose at once, as after a cut in a film: nothing is swept in between, and
+    /// collision starts afresh in the next step. Preconditions and errors are those of set_collider_pose().
     void place_collider(std::size_t collider_index, const RigidTransform& pose);
 
-    /// Of one collider, in place of the options' friction. The same otherwise.
+    /// Sets the friction of one collider, in place of that of the options.
+    /// @pre collider_index < colliders().size()
     /// @throws Error InvalidOptions for a friction out of range
     void set_collider_friction(std::size_t collider_index, double friction);
 
     /// Corrects the particles after a step of the solver, and moves the colliders.
     ///
-    /// A position is corrected where a particle comes nearer to a surface than the thickness: out along the
-    /// normal, and back along the surface by friction. Its velocity gets the same change, and then nothing of
-    /// it leads into the surface, relative to its material, which a collider carries along; impacts do not
-    /// bounce. Velocities are those at the end of the step; without them, (position - previous) / seconds is
-    /// the solver's to take.
+    /// A particle that comes closer to a surface than the thickness is moved out along the normal, and back
+    /// along the surface by friction. Its velocity changes accordingly and then has no component into the
+    /// surface, relative to the moving material of the collider; impacts do not bounce. Velocities are those
+    /// at the end of the step; a solver without velocities may use (position - previous) / seconds.
     ///
-    /// A particle whose position has exploded is left as it is and meets nothing; one whose previous position
-    /// has begins where it is now. A velocity that is not finite is left so. A particle that does not begin
-    /// where the last step ended (the solver has put it elsewhere) begins anew there; with another number of
-    /// particles all do.
+    /// A particle whose position has exploded stays as it is and collides with nothing; one whose previous
+    /// position has exploded starts at its present position. A velocity that is not finite is not changed. If
+    /// a particle's previous position is not that at the end of the last step, because the solver moved it
+    /// elsewhere, collision starts afresh for it; with another number of particles, for all.
     ///
-    /// Cost: O(n) for each collider that particles may be near, by bounding spheres; 20 ns a particle away
-    /// from surfaces and below 1 us for one that moves along them (docs/own_solver.md). Allocates in the
-    /// first step, with another number of particles and after place_collider(), else nothing.
-    /// @param seconds  that the step took; positive
-    /// @return the particles whose positions were corrected, ascending; until the next call
+    /// The cost is O(n) for each collider that particles may be near, by bounding spheres: about 20 ns for a
+    /// particle away from surfaces, and less than 1 us for a particle that moves along them
+    /// (docs/own_solver.md). The function allocates only in the first step, with another number of particles
+    /// and after place_collider().
+    /// @param seconds  the duration of the step; positive
+    /// @return the indices of particles whose positions were corrected, ascending; valid until the next call
     /// @throws Error InvalidOptions for arrays of different sizes, an inverse mass that is negative or not
-    /// finite, or a time that is not positive; then nothing has changed
+    /// finite, or a duration that is not positive; then nothing has changed
     std::span<const std::uint32_t> correct(const SolverStep& step, double seconds);
 
-    /// Where they stand.
+    /// The colliders in their present poses.
     const std::vector<Collider>& colliders() const;
-    /// How often a particle has ended a step inside an exact map, or on the other side of its surface, though
-    /// it was once outside.
+    /// The number of times that a particle that was once outside ended a step inside an exact map, or on the
+    /// other side of its surface.
     std::uint64_t lost_count() const;
 
   private:

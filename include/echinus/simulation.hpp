@@ -19,260 +19,265 @@
 
 ECHINUS_EXPORT_BEGIN
 
-/// Deformable models, cloth and soft bodies, as continuous materials in implicit steps, with contact and
-/// friction in the same energy (docs/mechanics.md). Or cloth after Jakobsen, "Advanced Character Physics"
-/// (GDC 2001), the method that the paper's simulations use (section 2.3): particles moved by Verlet
-/// integration, sticks between them relaxed one after the other, and collision with rigid models inside every
-/// relaxation.
+/// Simulation of deformable models, cloth and soft bodies. The default solver treats them as continuous
+/// materials in implicit steps, with contact and friction in the same energy (docs/mechanics.md). The other
+/// solver is that of the paper's simulations (section 2.3), after Jakobsen, "Advanced Character Physics" (GDC
+/// 2001): particles are moved by Verlet integration, distance constraints (*sticks*) between them are relaxed
+/// one after the other, and each relaxation includes collision with rigid models.
 namespace echinus {
 
-/// The purpose of a stick; each kind has its own stiffness.
+/// The purpose of a distance constraint; each kind has its own stiffness.
 enum class StickKind : std::uint8_t {
-    Structural, ///< between neighbours of a row or column: keeps the cloth from stretching
-    Shear,      ///< between neighbours along a diagonal: keeps its squares square
-    Bending,    ///< between every second particle of a row or column: keeps it from folding sharply
+    Structural, ///< between neighbours in a row or column: resists stretching
+    Shear,      ///< between neighbours along a diagonal: resists shear
+    Bending,    ///< between every second particle in a row or column: resists bending
 };
 inline constexpr std::size_t kStickKindCount = 3;
 
-/// Pulls or pushes two particles to the distance `rest_length`.
+/// A distance constraint, which pulls or pushes two particles to the distance `rest_length`. The paper calls
+/// it a stick.
 struct Stick {
     std::uint32_t a, b;
     float rest_length; ///< not negative
     StickKind kind;
 };
 
-/// Fixes a particle to a collider: it moves rigidly with the collider, from where it is at the start.
+/// Fixes a particle to a collider: it moves rigidly with the collider from its initial position.
 struct Attachment {
     std::uint32_t particle;
     std::uint32_t collider = 0; ///< index in the simulation's colliders
 };
 
-/// A particle and a collider that do not collide. Faces and edges of the particle pass through that collider,
-/// too.
+/// A particle and a collider that do not collide. Faces and edges of the particle also pass through that
+/// collider.
 struct CollisionFilter {
     std::uint32_t particle;
     std::uint32_t collider = 0; ///< index in the simulation's colliders
 };
 
-/// Particles that are held, led along a path, and let go.
+/// Particles that are held, moved along a path, and released.
 struct Handle {
-    std::vector<std::uint32_t> particles; ///< that are not pinned, each in one handle at most
-    /// Its path: where it is at which time after the simulation began, as pose_at() has it. Particles move
-    /// rigidly with it from where they begin, which is where they are at 0 s. No keys: it stands still.
+    std::vector<std::uint32_t> particles; ///< not pinned, each in at most one handle
+    /// The path of the handle: poses over the time since the simulation began, interpolated as by pose_at().
+    /// The particles move rigidly with the handle from their positions at 0 s. Without keys the handle does
+    /// not move.
     std::vector<PoseKey> keys{};
-    /// It lets go in the first frame that begins then or later, seconds, and what it held goes on with its
-    /// velocity. Infinite: never.
+    /// The time in seconds after which the handle releases its particles, in the first frame that begins then
+    /// or later; they keep their velocity. If infinite, they are not released.
     double release_time = std::numeric_limits<double>::infinity();
 };
 
-/// Particles and what holds them together, all in world units and axes.
+/// Particles, their constraints and materials, all in world units and axes.
 struct Deformable {
     std::vector<Vec3f> positions; ///< [particle_count]
-    /// [particle_count] where a particle at its present velocity was one frame ago: positions -
-    /// previous_positions = velocity * time_step. Under Jakobsen that is where it was.
+    /// [particle_count] The position of a particle one frame ago at its present velocity: positions -
+    /// previous_positions = velocity * time_step. With Jakobsen it is the actual previous position.
     std::vector<Vec3f> previous_positions;
-    /// [particle_count] 1 / mass; 0 for a pinned particle: it stays in place, or where it is attached, and no
-    /// collider pushes it. Jakobsen: in any unit, since only ratios count. Newton takes the masses of soft
-    /// bodies from here, in kg, and those of cloth from its ClothMaterial.
+    /// [particle_count] 1 / mass; 0 for a pinned particle, which stays in place or moves with its attachment,
+    /// and which no collider pushes. Jakobsen: in any unit, since only ratios matter. Newton takes the masses
+    /// of soft bodies from here, in kg, and those of cloth from its ClothMaterial.
     std::vector<float> inverse_masses;
-    /// In the order in which Jakobsen relaxes them. Of Newton's cloth only those count that are structural
-    /// and no edges of faces: threads.
+    /// The distance constraints, in the order in which Jakobsen relaxes them. Newton uses only structural
+    /// constraints that are not edges of faces: threads.
     std::vector<Stick> sticks;
-    std::vector<Triangle> faces;           ///< for Newton's cloth, pictures, wind and contact of surfaces
-    std::vector<Attachment> attachments{}; ///< of pinned particles, at most one of each
-    /// A particle of theirs that is in no face lies inside: those around it collide, and it does not.
+    std::vector<Triangle> faces;           ///< for Newton's cloth, rendering, wind and surface collision
+    std::vector<Attachment> attachments{}; ///< of pinned particles, at most one for each
+    /// The elements of soft bodies. A particle of theirs that is in no face is an interior particle and does
+    /// not collide.
     std::vector<ElasticTetrahedron> tetrahedra{};
     std::vector<CollisionFilter> filters{}; ///< in any order
-    /// [particle_count] The shape at rest, in any place and pose; empty: as it begins, which a simulation
-    /// writes here. Newton's cloth has its strain and its angles from it; sticks have their lengths
-    /// themselves.
+    /// [particle_count] The rest shape, in any pose. If empty, it is the initial shape, which a simulation
+    /// stores here. Newton computes the strain and the bending angles of cloth from it; distance constraints
+    /// have their own rest lengths.
     std::vector<Vec3f> rest_positions{};
-    std::vector<Handle> handles{}; ///< Newton
+    std::vector<Handle> handles{}; ///< Newton only
 
     std::size_t particle_count() const { return positions.size(); }
 };
 
-/// The same deformable, of which nothing collides with a collider. combine() makes a filter by pair of it: of
-/// this part and that collider.
+/// The same deformable, with filters that disable collision of all its particles with a collider. After
+/// combine() the filters apply to this part only.
 Deformable passing_through(std::uint32_t collider, Deformable deformable);
 
-/// [particle_count] 1 for the particles that a collider lets through by the deformable's filters; empty if
-/// there are none. Filters of particles that the deformable does not have are left out.
+/// [particle_count] 1 for the particles that pass through a collider by the deformable's filters; empty if
+/// there are none. Filters of particles that the deformable does not have are ignored.
 std::vector<std::uint8_t> let_through(const Deformable& deformable, std::size_t collider);
-/// The same of a face: does one of its particles pass? @param passes  as let_through() has it
+/// Does a face pass through the collider, because one of its particles does? @param passes  as returned by
+/// let_through()
 inline bool passes_through(const Triangle& face, std::span<const std::uint8_t> passes) {
     return !passes.empty() && (passes[face[0]] | passes[face[1]] | passes[face[2]]) != 0;
 }
 
 // ---- Cloth ----
 
-/// A rectangular sheet of cloth at rest. Its local frame has the sheet's middle at the origin, the columns
-/// along x, the rows along y, and z across it.
+/// A rectangular sheet of cloth at rest. In its local frame the middle of the sheet is at the origin, columns
+/// follow each other along x, rows along y, and z is the normal.
 struct ClothOptions {
     std::uint32_t column_count = 100; ///< particles along x; at least 2
-    std::uint32_t row_count = 100;    ///< particles along y; at least 2. Time per step grows with the product
+    std::uint32_t row_count = 100;    ///< particles along y; at least 2
     double width = 1;                 ///< along x, units
     double height = 1;                ///< along y, units
-    RigidTransform pose{};            ///< where the sheet starts; its rotation of unit length, to 1e-4
-    std::vector<std::uint32_t> pins{}; ///< particles that never move: row * column_count + column
+    RigidTransform pose{}; ///< initial pose of the sheet; its rotation has unit length, to within 1e-4
+    std::vector<std::uint32_t> pins{}; ///< particles that do not move: row * column_count + column
 };
 
-/// A sheet with structural, shear and bending sticks; for 100 x 100 particles 59 002 of them. Particle (row,
-/// column) has index row * column_count + column; every face turns its front along the sheet's local z.
-/// Sticks are ordered row by row.
+/// Makes a sheet with structural, shear and bending constraints; 100 x 100 particles have 59 002 of them.
+/// Particle (row, column) has the index row * column_count + column; the front of every face points along the
+/// sheet's local z. Constraints are ordered row by row.
 /// @throws Error InvalidOptions
 Deformable make_cloth(const ClothOptions& options);
 
-/// How a mesh becomes a cloth, and where it starts.
+/// The conversion of a mesh to a cloth, and its initial pose.
 struct MeshClothOptions {
-    RigidTransform pose{}; ///< its rotation of unit length, to 1e-4
+    RigidTransform pose{}; ///< its rotation has unit length, to within 1e-4
     double scale = 1;      ///< a vertex starts at pose.to_world(scale * vertex); positive
-    /// [vertex_count] The shape of the cloth at rest, where it differs from the mesh that it starts as;
-    /// scaled as well. If empty, the mesh is at rest.
+    /// [vertex_count] The rest shape of the cloth, if it differs from the initial mesh; it is scaled as well.
+    /// If empty, the mesh is at rest.
     std::vector<Vec3f> rest_vertices{};
-    /// Edges without faces: threads and needles. Where just two of them meet in a vertex, a bending stick
-    /// across it keeps them straight.
+    /// Edges without faces: threads and needles. If exactly two of them meet at a vertex, a bending
+    /// constraint across it keeps them straight.
     std::vector<std::array<std::uint32_t, 2>> threads{};
-    std::vector<std::uint32_t> pins{};     ///< vertices that never move
+    std::vector<std::uint32_t> pins{};     ///< vertices that do not move
     std::vector<Attachment> attachments{}; ///< vertices that move with a collider
 };
 
-/// A cloth of any shape: a garment, a sheet with holes, a closed bag, several pieces at once. Its particles
-/// are the mesh's vertices, and its faces the mesh's, of which those that run along a common edge the same
-/// way as an earlier one are turned round. On a one-sided surface that is not possible everywhere; only
-/// pictures show it.
+/// Makes a cloth of any shape: a garment, a sheet with holes, a closed bag, or several pieces at once, in O(n
+/// log n). Its particles are the mesh's vertices and its faces those of the mesh. Faces that traverse a
+/// common edge in the same direction as an earlier face are flipped. On a one-sided surface that is not
+/// possible everywhere; this affects only rendering.
 ///
-/// There is a structural stick along each edge and each thread. Two triangles that make up a quadrilateral
-/// with about right angles (within 20 degrees) have shear sticks along both diagonals instead, like the
-/// squares of a sheet. Across each other edge between two faces there is a bending stick, between the corners
-/// opposite it. Newton bends the faces themselves, and reads of the sticks only the threads.
+/// Each edge and each thread gets a structural constraint. Two triangles that form a quadrilateral with
+/// nearly right angles (within 20 degrees) get shear constraints along both diagonals instead of one along
+/// their common edge, like the squares of a sheet. Each other edge between two faces gets a bending
+/// constraint between the opposite corners. Newton computes bending from the faces, and uses only the
+/// constraints of threads.
 ///
-/// Masses are those of the areas around the particles in the rest shape; a thread weighs as much as a strip
-/// of cloth that is as wide as the mean edge is long. Their mean is 1, as in a sheet; Newton weighs cloth by
-/// its ClothMaterial. Time O(n log n).
-/// @throws Error InvalidMesh, naming a face, edge or vertex at fault, when inspect() would throw, an edge has
+/// Masses are proportional to the areas around the particles in the rest shape, with a mean of 1, as in a
+/// sheet; a thread weighs as much as a strip of cloth whose width is the mean edge length. Newton takes the
+/// masses of cloth from its ClothMaterial.
+/// @throws Error InvalidMesh, naming the face, edge or vertex, when inspect() would throw, an edge has
 /// more than two faces, two faces have the same corners, a face has no area or a thread no length in the
 /// rest shape, or a vertex belongs to no face or thread (weld() drops such vertices); InvalidOptions for
 /// options out of range, and for vertices that the mesh does not have
 Deformable make_cloth(const TriangleMesh& mesh, const MeshClothOptions& options);
 
-/// When a deformable counts as at rest: for `frame_count` frames in a row every particle has stayed
-/// within `distance` of one place and has been no faster than `speed`. Neither suffices alone: a particle
-/// that trembles stays near one place, and cloth at the end of a swing is slow for a moment.
+/// The condition of rest: for `frame_count` frames in a row every particle has stayed within `distance` of
+/// one position and has been no faster than `speed`. Neither suffices alone: a trembling particle stays near
+/// one position, and cloth at the end of a swing is slow for a moment.
 ///
-/// Under SolverKind::Jakobsen a much lower speed may never be reached: gravity alone adds 0.04 units per
-/// second in one frame of 1/240 s, and a particle that contacts and sticks move slightly back and forth
-/// trembles at such a speed forever.
+/// With SolverKind::Jakobsen a much lower speed may not be reached: gravity alone adds 0.04 units per second
+/// in one frame of 1/240 s, and a particle that contacts and constraints move slightly back and forth keeps
+/// trembling at such a speed.
 struct RestCondition {
     double distance = 0.001;        ///< units
     double speed = 0.1;             ///< units per second, at the end of a frame; may be infinite
     std::uint32_t frame_count = 60; ///< at least 1
 };
 
-/// How a deformable moves.
+/// The method by which a deformable moves.
 enum class SolverKind : std::uint8_t {
-    /// As a continuous material (docs/mechanics.md): each step minimises the energy of inertia, of the
-    /// material and of contact by Newton's method with multigrid. Cloth stretches as its ClothMaterial says
-    /// and soft bodies as theirs, whatever the resolution and the time step; 1/60 s per frame is a good step.
-    /// In SI units.
+    /// A continuous material in SI units (docs/mechanics.md): each step minimises the energy of inertia,
+    /// material and contact by Newton's method with multigrid. Cloth and soft bodies stretch as their
+    /// materials say, whatever the resolution and the time step; 1/60 s per frame is a good step.
     Newton,
-    /// The paper's (section 2.3), for reproduction and comparison: Verlet integration, sticks of which each
-    /// relaxation removes a share of the error (Jakobsen 2001), and particles that collide. More relaxations
-    /// per second make a stiffer cloth, so frames of 1/240 s or less are needed. It refuses tetrahedra and
-    /// surface_collision, and measures no loads.
+    /// The paper's method (section 2.3), for reproduction and comparison: Verlet integration, distance
+    /// constraints of whose error each relaxation removes a share (Jakobsen 2001), and collision of
+    /// particles. More relaxations per second make a stiffer cloth, so frames of 1/240 s or less are needed.
+    /// This solver refuses tetrahedra and surface_collision, and measures no loads.
     Jakobsen,
 };
 
 /// The material of cloth, for SolverKind::Newton. The defaults are those of a cotton, in SI units. Faces of
-/// tetrahedra are not cloth: bodies have a material of their own.
+/// tetrahedra are not cloth: bodies have their own material.
 struct ClothMaterial {
     double density = 0.2;            ///< mass per area, kg/m^2; positive
-    double stretch_stiffness = 1000; ///< force per width of warp and weft, N/m; positive. Threads have that
-                                     ///< of a strip as wide as the mean edge is long
+    double stretch_stiffness = 1000; ///< force per width of warp and weft, N/m; positive. A thread is as
+                                     ///< stiff as a strip whose width is the mean edge length
     double shear_stiffness = 400;    ///< between warp and weft, N/m; not negative
     double bending_stiffness = 1e-5; ///< N m; not negative
-    double damping = 0.01; ///< viscosity over stiffness, seconds: not negative. Motions that take much
+    double damping = 0.01; ///< viscosity divided by stiffness, seconds; not negative. Motions that take much
                            ///< longer are hardly damped
 };
 
 struct SimulationOptions {
     SolverKind solver = SolverKind::Newton;
-    double time_step = 1.0 / 60; ///< seconds per frame. Jakobsen needs a quarter of that or less: half of it
-                                 ///< takes twice the time and leaves a quarter of the stretch
-    /// Jakobsen: relaxations per frame, of all sticks and then of all contacts: more take longer and stretch
-    /// less.
+    double time_step = 1.0 / 60; ///< seconds per frame. Jakobsen needs a quarter of that or less: halving the
+                                 ///< step doubles the computing time and leaves a quarter of the stretch
+    /// Jakobsen: number of relaxations per frame, of all distance constraints and then of all contacts. More
+    /// relaxations take longer and leave less stretch.
     std::uint32_t iteration_count = 10;
     Vec3d gravity{0, 0, -9.81}; ///< units per second squared
     double drag = 0.005; ///< Jakobsen: share of the velocity that is lost per frame, 0 to 1. Newton: air_drag
-    /// Jakobsen: share of a stick's error that one relaxation removes, by StickKind. 1 removes all; from 1 to
-    /// 2 (not included) it overshoots, which carries tension further per relaxation.
+    /// Jakobsen: share of a constraint's error that one relaxation removes, by StickKind. 1 removes all of
+    /// it; a value between 1 and 2 overshoots, which propagates tension farther per relaxation.
     std::array<double, kStickKindCount> stiffness{1, 1, 0.3};
-    ClothMaterial material{}; ///< Newton
-    /// Newton: at most so many steps of Newton's method in each frame, or part of one; fewer where it has
-    /// converged. Fewer than two leave contacts unresolved.
+    ClothMaterial material{}; ///< Newton only
+    /// Newton: largest number of steps of Newton's method in each frame or substep; fewer are taken if it
+    /// converges. Fewer than two leave contacts unresolved.
     std::uint32_t newton_step_count = 4;
-    /// Newton: a step of Newton's method has converged if the energy that it gains could move particles no
-    /// farther than this in the root mean square; share of the mean edge length.
+    /// Newton: tolerance of Newton's method, relative to the mean edge length. It has converged if the
+    /// decrease of the energy corresponds to a root-mean-square displacement of at most this length.
     double newton_tolerance = 5e-4;
-    /// Newton: resistance of still air, 1/s: the rate at which a velocity decays that nothing keeps up,
-    /// whatever the time step. 0 is a vacuum.
+    /// Newton: resistance of still air, 1/s: the rate at which a free velocity decays, whatever the time
+    /// step. 0 is a vacuum.
     double air_drag = 0.5;
-    /// Distance that the deformable keeps from colliders, units. If not given, half the mean rest length of
-    /// the structural sticks or, of soft bodies, half the mean edge (docs/thickness.md). Newton: never less
-    /// than a fiftieth of the mean edge. Jakobsen: 0 is possible and slow: particles on the surface itself
-    /// need a query in every relaxation, and a face in twenty is cut.
+    /// Distance in units that the deformable keeps from colliders. By default it is half the mean rest length
+    /// of the structural constraints or, for soft bodies, half the mean edge length (docs/thickness.md).
+    /// Newton: at least a fiftieth of the mean edge length. Jakobsen: 0 is possible but slow, since particles
+    /// on the surface itself need a query in every relaxation, and one face in twenty is cut.
     std::optional<double> thickness{};
-    /// Coulomb's coefficient; 0 is ice. Jakobsen: tangential motion relative to the collider is shortened by
-    /// this times the length of the push, and never reversed.
+    /// Coulomb's coefficient; 0 is no friction. Jakobsen: the tangential motion relative to the collider is
+    /// reduced by the coefficient times the length of the push-out, and is not reversed.
     double friction = 0.5;
     RestCondition rest{};
-    /// false under Jakobsen: no particle is rescued; those that cross the surface of an exact map are counted
-    /// as lost and left there. Only to demonstrate the effect of the proof at the end of a frame.
+    /// Jakobsen: if false, no particle is rescued; those that cross the surface of an exact map are counted
+    /// as lost and stay there. This only serves to demonstrate the effect of the proof at the end of a frame.
     bool keep_free = true;
-    /// Accept exact maps of open meshes. Nothing is promised for them: near a gap it is only estimated what
-    /// is inside, so particles get in there, some are pushed out through the surface, and lost_count tells
-    /// how often. Prefer a closed mesh (see repair()) or a distance map.
+    /// Accept exact maps of open meshes. Nothing is guaranteed for them: near a hole the inside is only
+    /// estimated, so particles get in there, and some are pushed out through the surface; lost_count counts
+    /// them. Prefer a closed mesh (see repair()) or a distance map.
     bool allow_open_colliders = false;
-    /// Edges and faces collide too, not only particles: no face of the deformable ever meets a collider
-    /// (docs/surfaces.md). Every collider needs an exact map, as its map or as ColliderMap::surface; under
-    /// Newton only particles collide with one that has none. One of an open mesh needs no
-    /// allow_open_colliders and keeps each particle on its side. Nothing may intersect at the start, no
-    /// particle may begin inside a closed model (but see untangle), and keep_free must be true.
+    /// Edges and faces collide, too, not only particles: no face of the deformable intersects a collider,
+    /// within the limits of docs/limits.md (docs/surfaces.md explains the method). Every collider needs an
+    /// exact map, as its map or as ColliderMap::surface; with Newton only particles collide with a collider
+    /// without one. The exact map of an open mesh does not need allow_open_colliders, and keeps each particle
+    /// on its side. At the start nothing may intersect and no particle may be inside a closed model (but see
+    /// untangle), and keep_free must be true.
     bool surface_collision = false;
-    /// Needs surface_collision: the faces of the deformable do not meet each other either.
+    /// The faces of the deformable do not intersect each other either. Needs surface_collision.
     bool self_collision = false;
-    /// Distance that layers of the deformable keep from each other, units. If not given, the thickness. Near
-    /// small faces it is less: at most 0.4 of the least height of a face, and a quarter of the mean
-    /// edge, so that neighbours have room.
+    /// Distance in units that layers of the deformable keep from each other; by default the thickness. It is
+    /// less near small faces: at most 0.4 of the least height of a face, and a quarter of the mean edge
+    /// length, so that neighbours have room.
     std::optional<double> self_thickness{};
-    /// Needs surface_collision: what begins intersecting, or inside a closed model, is parted before the
-    /// first frame instead of refused, by moving particles that are not pinned; what cannot be parted is
-    /// refused. Time: up to some hundred times that of looking for the pairs that intersect
-    /// (intersections.hpp).
+    /// Separate a start that intersects, or that lies inside a closed model, before the first frame instead
+    /// of refusing it, by moving particles that are not pinned. A start that cannot be separated is refused.
+    /// Needs surface_collision. It takes up to about a hundred times the time of a search for intersecting
+    /// pairs (intersections.hpp).
     bool untangle = false;
-    /// A particle farther than this from the middle of where the deformable began ends the simulation as
-    /// diverged, units. 0: 10 000 times the deformable's extent at the start.
+    /// Largest distance in units of a particle from the initial middle of the deformable. A particle farther
+    /// away ends the simulation as diverged. 0 means 10 000 times the initial extent of the deformable.
     double bound = 0;
-    /// Threads that compute a frame; 0: all cores. The bits do not depend on it. More than one wait awake
-    /// while a frame lasts, and need oneTBB.
+    /// Threads that compute a frame; 0 means all cores. The results do not depend on it, bit for bit. More
+    /// than one thread needs oneTBB; they spin while they wait during a frame.
     unsigned thread_count = 1;
-    /// Wind of every frame for which blow() is not called, with the numbers that blow() takes. A rate of 0:
-    /// no air; then the wind must be 0, too.
+    /// Wind in every frame for which blow() is not called, with the arguments of blow(). A rate of 0 means no
+    /// air; then the wind must be 0, too.
     Vec3d wind{};         ///< units per second
     double wind_rate = 0; ///< per second
-    /// Newton: inside the closed pieces of cloth, beyond that around them, N/m^2; constant, as that of a
-    /// pump. It pushes each face outwards. Not negative.
+    /// Newton: pressure inside the closed pieces of cloth in excess of the surrounding pressure, N/m^2. It is
+    /// constant, like that of a pump, and pushes each face outwards. Not negative.
     double pressure = 0;
 };
 
-/// A force and a torque that bear on a collider, in the world's axes.
+/// A force and a torque on a collider, in world axes.
 struct Load {
     Vec3d force;  ///< N
     Vec3d torque; ///< N m, about the pose's translation, as it moves
 };
 
-/// A contact that pushed in the last frame: of a particle, an edge or a face of the deformable with a
-/// collider, or of two of its own.
+/// A contact that pushed in the last frame, between a particle, edge or face of the deformable and a
+/// collider, or between two elements of the deformable.
 struct ContactPoint {
     /// In place of the number of a collider or of a particle.
     static constexpr std::uint32_t kNone = 0xFFFFFFFF;
@@ -283,75 +288,76 @@ struct ContactPoint {
     double normal_impulse;  ///< on the deformable (its first part) along the normal in the frame, N s
     Vec3d friction_impulse; ///< the same across the normal, N s
     std::uint32_t collider; ///< kNone: the contact is of the deformable with itself
-    /// Of the first part, and then of the second one if it is the deformable's own, too: a vertex and the
-    /// three of a face, or two and two of edges. kNone where there are fewer.
+    /// The particles of the first element, followed by those of the second one in self-collision: a vertex
+    /// and the three of a face, or two and two of edges. Unused entries are kNone.
     std::array<std::uint32_t, 4> particles;
 };
 
-/// Times and counts of step() since the simulation began. Times are not part of the result.
+/// Times and counts of step() since the simulation began. Times vary from run to run.
 struct SimulationProfile {
     double integration_seconds = 0;  ///< Jakobsen: Verlet, and the check for divergence and rest
-    double constraint_seconds = 0;   ///< Newton: its steps; Jakobsen: sticks
-    double collision_seconds = 0;    ///< all about contact, and moving the colliders
+    double constraint_seconds = 0;   ///< Newton: its steps; Jakobsen: distance constraints
+    double collision_seconds = 0;    ///< contact, and moving the colliders
     std::uint64_t query_count = 0;   ///< Jakobsen: particle queries, counted per iteration and collider
     std::uint64_t contact_count = 0; ///< Newton: contacts that push, by step; Jakobsen: queries that pushed
-    /// Jakobsen: queries that needed the map; beside an exact map, a particle that has hardly moved is
-    /// answered from memory.
+    /// Jakobsen: queries that needed the map; with an exact map a particle that has hardly moved is answered
+    /// from memory.
     std::uint64_t map_query_count = 0;
-    /// Jakobsen: times that a particle was rescued: not free of all exact maps after the relaxations of a
-    /// frame, though it was once, and put back to a free place. docs/conventions.md defines free, rescued and
-    /// lost.
+    /// Jakobsen: number of times that a particle was rescued: after the relaxations of a frame it was no
+    /// longer free of all exact maps, and was moved back to a free position. docs/conventions.md defines
+    /// free, rescued and lost.
     std::uint64_t rescued_count = 0;
-    /// Jakobsen: times that a particle was lost: it ended a frame not free of an exact map, though it was
-    /// once. It counts once for each such map, and again in each frame that it ends so. A particle that began
-    /// inside and was never outside yet does not count.
+    /// Jakobsen: number of times that a particle was lost: it was once free of an exact map and ended a frame
+    /// not free of it. It counts once for each such map, and again in each such frame. A particle that began
+    /// inside and has not been outside yet does not count.
     std::uint64_t lost_count = 0;
-    /// With surface_collision: times that a particle ended a frame, or a part of one that is divided, short
-    /// of where it was going, because its edges or faces could have met something on the way.
+    /// With surface_collision: number of times that the displacement of a particle in a frame or substep was
+    /// truncated, because its edges or faces could have met a surface on the path.
     std::uint64_t truncated_count = 0;
-    /// With surface_collision: pairs of a vertex and a face or of two edges that were measured.
+    /// With surface_collision: vertex-face and edge-edge pairs whose distance was measured.
     std::uint64_t measured_pair_count = 0;
-    /// With surface_collision: pairs of a vertex and a face or of two edges for which no room was proven when
-    /// a step began, summed over all steps: a pinned particle was led through something, or colliders left no
-    /// room between them. While it is 0, no faces intersect at the end of a frame, but for rounding, which is
-    /// not counted, hundreds of a collider's radii from the origin (docs/surfaces.md).
+    /// With surface_collision: unresolved vertex-face and edge-edge pairs, for which no free space was proven
+    /// at the start of a substep, summed over all substeps: a pinned particle was driven through a surface,
+    /// or colliders left no room between them. While it is 0, no faces intersect at the end of a frame,
+    /// except by rounding hundreds of a collider's radii away from the origin, which is not counted
+    /// (docs/limits.md).
     std::uint64_t squeezed_count = 0;
 };
 
-/// Of the structural sticks, how far their lengths are from those at rest, as a share of these. 0.01 is 1 %.
-/// Under Jakobsen it is what relaxations have left undone; under Newton the strain of the material is part
-/// of it.
+/// The relative deviation of structural constraints from their rest lengths; 0.01 is 1 %. With Jakobsen it is
+/// the residual error of the relaxations; with Newton it includes the strain of the material.
 struct Residual {
-    double root_mean_square = 0, largest = 0; ///< 0 without such sticks
+    double root_mean_square = 0, largest = 0; ///< 0 without such constraints
 };
 
-/// A cut, as in a film: things are elsewhere from one frame to the next, and nothing moves on the way.
+/// A cut, as in a film: objects are elsewhere from one frame to the next, without moving in between.
 struct Teleport {
-    RigidTransform motion; ///< a point p goes to motion.to_world(p); velocities turn along
-    /// Indices of the colliders that go along, with their keyframes.
+    RigidTransform motion; ///< a point p goes to motion.to_world(p); velocities rotate with it
+    /// Indices of the colliders that are teleported, with their keyframes.
     std::vector<std::uint32_t> colliders{};
-    /// Whether the deformable goes along, with pinned particles and the paths of handles. Colliders to which
-    /// any of it is attached have to do as it does.
+    /// Whether the deformable is teleported, with pinned particles and the paths of handles. Colliders to
+    /// which particles are attached must be teleported with it.
     bool deformable = true;
-    /// Seconds after the simulation began: in the first frame that begins then or later.
+    /// Seconds since the simulation began: the cut takes place in the first frame that begins then or later.
     double time = 0;
 };
 
 class [[gnu::visibility("hidden")]] Solver; // src/simulation/solver.hpp
 
-/// A deformable among colliders. The same input gives the same positions bit for bit, on every run and with
-/// every instruction set and number of threads; tested on x86-64 and WebAssembly. Copies are independent.
+/// The simulation of a deformable and its colliders. The same input gives the same positions, bit for bit, in
+/// every run and with any instruction set and number of threads; this is tested on x86-64 and WebAssembly.
+/// Copies are independent.
 class Simulation {
   public:
-    /// Under Jakobsen allocates all that step() needs. Rotations whose quaternion is off the unit length by
-    /// no more than 1e-4, as rounding to float leaves them, are brought to it.
-    /// @throws Error InvalidOptions, naming what is at fault, when an option is out of range, the arrays of
-    /// the deformable do not fit together, a stick or a face names a particle that does not exist, a number
-    /// is not finite, or a collider has a scale of 0, a rotation that is not of unit length, a null pointer
-    /// for a map, or the exact map of an open mesh without options.allow_open_colliders; with
-    /// options.surface_collision also when a collider has no exact map, or the deformable begins intersecting
-    /// a collider or, with options.self_collision, itself, or inside, and options.untangle is not set or
-    /// could not part them: the sentence names the first pairs
+    /// Prepares a simulation. With Jakobsen it allocates all memory that step() needs. Rotations whose length
+    /// differs from 1 by at most 1e-4, as after rounding to float, are normalised.
+    /// @throws Error InvalidOptions, naming the fault, when an option is out of range, the arrays of the
+    /// deformable do not fit together, a constraint or a face refers to a particle that does not exist, a
+    /// number is not finite, or a collider has a scale of 0, a rotation that does not have unit length, a
+    /// null pointer for a map, or the exact map of an open mesh without options.allow_open_colliders. With
+    /// options.surface_collision it is also thrown when a collider has no exact map, or when the deformable
+    /// initially intersects a collider or, with options.self_collision, itself, or is inside a collider, and
+    /// options.untangle is not set or could not separate them: the message names the first pairs
     Simulation(Deformable deformable, std::vector<Collider> colliders, const SimulationOptions& options);
     ~Simulation();
     Simulation(const Simulation& other);
@@ -359,172 +365,175 @@ class Simulation {
     Simulation(Simulation&& other) noexcept;
     Simulation& operator=(Simulation&& other) noexcept;
 
-    /// One frame. Newton: colliders move on along their velocities and take along what is near them; then the
-    /// energy is minimised, and no step towards the minimum is longer than what keeps faces apart: no face
-    /// meets a collider, or another face with options.self_collision, when a frame ends. docs/surfaces.md has
-    /// the limits, most of which squeezed_count counts where they were met. A frame in which a collider
-    /// moves far is divided into up to 32 steps. Memory is kept from frame to frame: a frame that needs no
-    /// more than those before allocates nothing, but where maps of colliders that deform are built.
+    /// Computes one frame. Newton: colliders advance by their velocities and carry along nearby particles;
+    /// then the energy is minimised, and every step towards the minimum is limited so that faces stay apart:
+    /// when a frame ends, no face intersects a collider or, with options.self_collision, another face.
+    /// docs/limits.md lists the limits; squeezed_count counts most of the cases in which they were exceeded.
+    /// A frame in which a collider moves far is divided into up to 32 substeps. Memory is kept from frame to
+    /// frame: a frame that needs no more than the previous ones allocates nothing, except for the maps of
+    /// deforming colliders.
     ///
-    /// Jakobsen: Verlet integration with drag, colliders that move on, then iteration_count times all sticks
-    /// and collision of all particles with all colliders; at last the proof that no particle passed through
-    /// an exact map. Allocates nothing.
+    /// Jakobsen: a frame consists of Verlet integration with drag, the motion of the colliders,
+    /// iteration_count relaxations of all distance constraints and all collisions of particles with
+    /// colliders, and finally the proof that no particle passed through an exact map. It allocates nothing.
     ///
-    /// A distance map pushes along its rays (docs/paper.md), and a custom map to the points that it names,
+    /// A distance map pushes along its rays (docs/paper.md), and a custom map to the points that it returns,
     /// both gently: a particle that is not inside is pushed no farther than it came. An exact map pushes to
-    /// the thickness over the nearest point. At the end of the frame each particle is swept from where it was
-    /// free last to where it is, as the moving collider sees it. A particle that is not free is rescued: it
-    /// is put before the crossing, where the same sweep finds it free, or goes back to where it was free,
-    /// moved along with the collider.
+    /// the thickness above the nearest point. At the end of the frame each particle is swept from its last
+    /// free position to its present one, in the frame of the moving collider. A particle that is not free is
+    /// rescued: it is moved back in front of the crossing, where the same sweep finds it free, or to its last
+    /// free position, moved along with the collider.
     ///
-    /// So no particle passes through an exact map, however fast it is or thin the model: with one exact map,
-    /// near enough to the origin for floats, lost_count stays 0. The limits of that promise:
-    /// - It is about particles. An edge of the model may stick out between them.
-    /// - Distance maps and custom maps are not swept. Nothing is promised for them, nor for the exact map of
-    ///   an open mesh.
-    /// - Pinned and attached particles are left where they are held.
-    /// - A particle that begins inside is pushed to the nearest surface point, and kept outside once it is
-    ///   outside.
-    /// - A particle that several exact maps squeeze until it cannot be placed goes to where it was last free
-    ///   of the first of them, or else of the next, and counts as lost to the others.
-    /// - Far from the origin, floats may be too coarse for the room around the last free place. A particle
-    ///   that cannot be placed there counts as lost.
-    /// @throws Error Diverged, naming the frame, and so does each further step; as teleport(); as
-    /// ExactMap::build() where a vertex cache leads a collider to a surface of which no map can be built:
-    /// then nothing has changed, and the simulation can go on after set_collider_cache() with another cache
+    /// So no particle passes through an exact map, however fast it is and however thin the model: with one
+    /// exact map, close enough to the origin for floats, lost_count stays 0. This guarantee has limits:
+    /// - It applies to particles. An edge of the model may protrude between them.
+    /// - Distance maps and custom maps are not swept. Nothing is guaranteed for them, nor for the exact map
+    /// of an open mesh.
+    /// - Pinned and attached particles stay where they are held.
+    /// - A particle that begins inside is pushed to the nearest surface point, and kept outside from then on.
+    /// - A particle that is squeezed between several exact maps returns to its last position free of the
+    /// first of them, or else of the next, and counts as lost to the others.
+    /// - Far from the origin floats may be too coarse for the room around the last free position. A particle
+    /// that cannot be placed there counts as lost.
+    ///
+    /// @throws Error Diverged, naming the frame, also in each further step; as teleport(); as
+    /// ExactMap::build() if no map can be built from the vertices of a vertex cache: then nothing has
+    /// changed, and the simulation can continue after set_collider_cache() with another cache
     void step();
 
     const Deformable& deformable() const;
     std::span<const Vec3f> positions() const { return deformable().positions; }
     const std::vector<Collider>& colliders() const;
-    /// As given, with the thickness in force.
+    /// The given options, with the effective thickness.
     const SimulationOptions& options() const;
-    /// Frames computed so far.
+    /// Number of frames computed so far.
     std::uint32_t frame() const;
     /// Speed of the fastest particle in the last frame, units per second; infinite before the first.
     double largest_speed() const;
     /// Has the rest condition held for the required number of frames?
     bool at_rest() const;
     const SimulationProfile& profile() const;
-    /// At the end of the last frame. Under Jakobsen large residuals call for more relaxations or smaller
-    /// steps. Time: about a third of a relaxation of all sticks.
+    /// The residual at the end of the last frame. With Jakobsen a large residual calls for more relaxations
+    /// or smaller steps. It takes about a third of the time of a relaxation of all constraints.
     Residual residual() const;
-    /// XXH64 of the bits of all positions and previous positions.
+    /// XXH64 hash of the bits of all positions and previous positions.
     std::uint64_t state_hash() const;
 
-    // Steering colliders. Of these four the last one called holds; each needs collider_index <
-    // colliders().size().
+    // Motion of colliders. The last call of one of these four functions applies. All have the precondition
+    // collider_index < colliders().size().
 
     /// The collider keeps these velocities.
     void set_collider_velocity(std::size_t collider_index, const Vec3d& linear, const Vec3d& angular);
 
-    /// The next frame leads the collider to this pose, evenly and the shorter way round, and leaves it there,
-    /// to rounding. Particles and surfaces are kept out of it on the way as of any collider that moves, and
-    /// rub against it. Until the next call it stands still.
-    /// @throws Error InvalidOptions when the pose is not finite, or its rotation off the unit length by more
-    /// than 1e-4
+    /// The collider moves to this pose during the next frame, at constant velocity and rotating along the
+    /// shorter arc, and then stays there until the next call, up to rounding. On its path it collides and
+    /// rubs like any moving collider.
+    /// @throws Error InvalidOptions when the pose is not finite, or the length of its rotation differs from 1
+    /// by more than 1e-4
     void set_collider_pose(std::size_t collider_index, const RigidTransform& pose);
 
-    /// The collider follows the keys: each frame leads it to where pose_at() has it at the frame's end, which
-    /// is options().time_step * frame() after the simulation began. It does so from where it is, so begin it
-    /// at pose_at() of the present. The simulation is not at rest before the last key. No keys: it stands
-    /// still.
-    /// @throws Error InvalidOptions, naming the key, when a time or a pose is not finite, a rotation not of
-    /// unit length to 1e-4, or a time not later than the one before it
+    /// The collider follows keyframes: each frame moves it to the pose of pose_at() at the frame's end, which
+    /// is options().time_step * frame() after the simulation began. It starts from its present pose, so place
+    /// it at the present pose_at() first. The simulation is not at rest before the last key. Without keys the
+    /// collider does not move.
+    /// @throws Error InvalidOptions, naming the key, when a time or a pose is not finite, a rotation does
+    /// not have unit length to within 1e-4, or a time is not later than the previous one
     void set_collider_keyframes(std::size_t collider_index, std::vector<PoseKey> keys);
 
-    /// Newton: the collider goes on freely from its velocities, as a solid of uniform density: by gravity
-    /// and, in each frame, by the load of the frame before. So it is to weigh no less than the part of the
-    /// deformable that it touches, or takes smaller time steps. Other colliders do not stop it.
+    /// Newton: the collider moves freely from its present velocities, as a solid of uniform density, under
+    /// gravity and, in each frame, the load of the previous frame. It should weigh no less than the part of
+    /// the deformable that it touches; otherwise use smaller time steps. Other colliders do not stop it.
     /// @param mass  kg
-    /// @throws Error InvalidOptions when the mass is not positive and finite, the solver is Jakobsen, or the
-    /// collider has no exact map, or one of an open mesh
+    /// @throws Error InvalidOptions when the mass is not positive and finite, the solver is Jakobsen, or
+    /// the collider has no exact map, or that of an open mesh
     void set_collider_free(std::size_t collider_index, double mass);
 
-    /// Newton: sets colliders, the deformable or both elsewhere, at once where its time has come, else in the
-    /// frame of its time. Velocities stay as they are, but for their directions; a collider that goes without
-    /// the deformable takes nothing along, pushes nothing on the way, and stands where it is then. Things
-    /// that go together stay to each other as they were, to rounding of positions.
-    /// @throws Error InvalidOptions when the motion is not finite or its rotation off the unit length by more
-    /// than 1e-4, a collider does not exist, the solver is Jakobsen, only one of a collider and what is
-    /// attached to it goes, or, with options().surface_collision, the deformable would meet a collider there;
-    /// the last from step() where its time comes later. Then nothing has changed, and it is forgotten
+    /// Newton: moves colliders, the deformable or both elsewhere, at once if the teleport's time has come,
+    /// otherwise in the frame of that time. Velocities keep their magnitudes and rotate with the motion. A
+    /// collider that is teleported without the deformable carries nothing along and pushes nothing in
+    /// between. Objects that are teleported together keep their relative positions, up to rounding.
+    /// @throws Error InvalidOptions when the motion is not finite or the length of its rotation differs from
+    /// 1 by more than 1e-4, a collider does not exist, the solver is Jakobsen, only one of a collider and the
+    /// particles attached to it is teleported, or, with options().surface_collision, the deformable would
+    /// intersect a collider; the last error comes from step() if the time is in the future. Then nothing has
+    /// changed, and the teleport is dropped
     void teleport(const Teleport& teleport);
 
-    // Colliders that deform: their vertices move, and their faces stay the same. Each needs collider_index <
-    // colliders().size(), an exact map and options().surface_collision. Surfaces are kept off the moving
-    // faces as off any (docs/surfaces.md), and attached particles stay beside the face that was nearest to
-    // them when the collider first deformed. Each frame that deforms it builds its exact map anew, on one
-    // thread, and may allocate.
+    // Deforming colliders: their vertices move, and their faces stay the same. These functions need
+    // collider_index < colliders().size(), an exact map and options().surface_collision. Surfaces are kept
+    // off the moving faces as off any others (docs/surfaces.md), and attached particles follow the face that
+    // was nearest to them when the collider first deformed. Each frame that deforms a collider rebuilds its
+    // exact map on one thread, and may allocate.
 
-    /// The next frame leads the vertices of a collider's mesh here, each on a straight way; then they rest.
-    /// The pose, which may move meanwhile, is another thing. The map is built in this call.
-    /// @param vertices_local  [vertex_count] of the mesh that its exact map was built of, in its order
-    /// @throws Error InvalidOptions for another number of vertices, a place that is not finite, a collider
+    /// During the next frame the vertices of a collider's mesh move to these positions along straight lines;
+    /// then they stop. The pose is independent and may move at the same time. The map is built in this call.
+    /// @param vertices_local  [vertex_count] the vertices of the mesh from which its exact map was built, in
+    /// the same order
+    /// @throws Error InvalidOptions for another number of vertices, a position that is not finite, a collider
     /// without an exact map, or without options().surface_collision; as ExactMap::build(). Then nothing has
     /// changed
     void set_collider_vertices(std::size_t collider_index, std::span<const Vec3f> vertices_local);
 
-    /// Each frame leads the vertices to where vertices_at() has them at its end. The simulation is not at
-    /// rest before the last sample.
-    /// @throws Error InvalidOptions for a cache of another number of vertices, without a sample, or with
-    /// times or places that are not finite; and as above
+    /// Each frame moves the vertices to those of vertices_at() at its end. The simulation is not at rest
+    /// before the last sample.
+    /// @throws Error InvalidOptions for a cache with another number of vertices, without a sample, or with
+    /// times or positions that are not finite; and as above
     void set_collider_cache(std::size_t collider_index, VertexCache cache);
 
-    /// Newton: what the deformable put on a collider in the last frame by contact and friction, as its mean
-    /// over the frame. Before the first frame 0, and always under Jakobsen. A host that moves a rigid body by
-    /// it and then the collider by the body exchanges momentum with the deformable (examples/08_load).
+    /// Newton: the force and torque that the deformable exerted on a collider in the last frame by contact
+    /// and friction, averaged over the frame. It is 0 before the first frame, and always with Jakobsen. A
+    /// program that applies the load to a rigid body and moves the collider with the body exchanges momentum
+    /// with the deformable (examples/08_load).
     /// @pre collider_index < colliders().size()
     Load load_on(std::size_t collider_index) const;
 
-    /// Newton: whether the frames that follow record the contacts that push. Off at the beginning; it then
-    /// costs nothing. Not part of a saved state.
+    /// Newton: sets whether the following frames record the contacts that push. It is off by default, and
+    /// then costs nothing. It is not part of a saved state.
     void record_contacts(bool is_on);
-    /// The contacts that were recorded in the last frame, in an order of their own; valid until the next
-    /// frame. Their impulses divided by the time step sum to load_on() of each collider, except for the loads
-    /// of attached particles and of particles that a collider stopped before contact could
+    /// The contacts that were recorded in the last frame, in unspecified order; valid until the next frame.
+    /// Their impulses divided by the time step sum to load_on() of each collider, except for the loads of
+    /// attached particles and of particles that a collider stopped before contact could
     /// (SimulationProfile::truncated_count). Empty under Jakobsen.
     std::span<const ContactPoint> contact_points() const;
 
-    /// Gives a particle a velocity, units per second, from which the next frame goes on as from any other:
-    /// the material pulls at it and colliders stop it, so a hand that drags particles by setting their
-    /// velocities towards itself before each frame drags none of them into a model. A pinned particle stays.
+    /// Sets the velocity of a particle, in units per second. The next frame treats it like any other
+    /// velocity: the material pulls at the particle and colliders stop it. So to drag particles, set their
+    /// velocities towards the pointer before each frame; none of them is dragged into a model. A pinned
+    /// particle does not move.
     /// @pre particle < particle_count(), and the velocity is finite
     void set_particle_velocity(std::size_t particle, const Vec3d& velocity);
 
-    /// Wind for the time of one frame: of the velocity with which air moves across a face, along its normal,
-    /// particles take on the share rate * time_step, each as the mean over the faces around it. Air slips
-    /// along faces. Call before each frame, in which it takes the place of the options' wind.
-    /// @param wind  of the air, units per second; 0 is air at rest, which brakes
-    /// @param rate  per second: the higher, the lighter the cloth. Not negative
+    /// Sets the wind for one frame. Particles take on the share rate * time_step of the velocity of the air
+    /// relative to a face along the face's normal, averaged over the surrounding faces. Air slips along
+    /// faces. Call this before each frame, in which it replaces the wind of the options.
+    /// @param wind  velocity of the air, units per second; 0 is air at rest, which slows motion
+    /// @param rate  per second; higher for lighter cloth. Not negative
     /// @pre both are finite
     void blow(const Vec3d& wind, double rate);
 
-    // Saved states (docs/saved_states.md). Between frames.
+    // Saved states (docs/saved_states.md). Call these functions between frames.
 
-    /// All that decides how the simulation goes on, as bytes: particles, what is known of the surfaces
-    /// around them, the motion of the colliders, counts. The same state gives the same bytes. Not in it is
-    /// what the simulation was made of: deformable, maps, options and vertex caches.
-    /// Cost: about 100 bytes for each particle, and more where surfaces collide; about the time of a
-    /// copy.
+    /// Returns the state of the simulation as bytes: particles, cached data on the surfaces around them, the
+    /// motion of the colliders, and counts. The same state gives the same bytes. The inputs of the simulation
+    /// are not included: deformable, maps, options and vertex caches. A state takes about 100 bytes per
+    /// particle, and more with surface collision; saving takes about the time of a copy.
     std::vector<std::byte> save_state() const;
-    /// The same in a file, which appears whole or not at all.
+    /// Writes the state to a file atomically.
     /// @throws Error Unwritable
     void save_state(const std::filesystem::path& path) const;
 
-    /// Goes back, or on, to a saved state: the frames that follow have the same bits as those that followed
-    /// it. The simulation has to be made of the same deformable, colliders where they began, and options; a
-    /// collider that followed a vertex cache follows the same one already. Poses, velocities and keyframes
-    /// come from the state. A custom map is not compared. Times in profile() stay as they are.
+    /// Restores a saved state: the following frames are bit-identical to those that followed it. The
+    /// simulation must have been made from the same deformable, colliders in their initial poses, and
+    /// options; a collider that followed a vertex cache must already follow the same one. Poses, velocities
+    /// and keyframes come from the state. A custom map is not compared. Times in profile() stay as they are.
     ///
-    /// Bytes are checked before use, whatever they are. References and spans that this simulation gave out
-    /// end.
-    /// @param name  of the bytes, as errors begin
-    /// @throws Error WrongFormat, UnsupportedVersion or Damaged for bytes that are no state of this version,
-    /// truncated or changed; InvalidOptions for a state of another simulation, saying what differs. Then
-    /// nothing has changed
+    /// All bytes are checked before use. References and spans that this simulation returned become invalid.
+    /// @param name  name of the bytes, with which error messages begin
+    /// @throws Error WrongFormat, UnsupportedVersion or Damaged for bytes that are not a state of this
+    /// version, truncated or changed; InvalidOptions for a state of another simulation, naming the
+    /// difference. Then nothing has changed
     void restore_state(std::span<const std::byte> bytes, const std::string& name = "the saved state");
-    /// From a file. @throws Error as above, and Unreadable; the sentence begins with the path
+    /// Restores a state from a file. @throws Error as above, and Unreadable; the message begins with the path
     void restore_state(const std::filesystem::path& path);
 
   private:

@@ -11,38 +11,40 @@
 
 ECHINUS_EXPORT_BEGIN
 
-/// Soft bodies: organs, rubber, dough. docs/soft_bodies.md has the method, its limits and what was measured.
+/// Soft bodies: organs, rubber, dough. docs/soft_bodies.md describes the method, its limits and
+/// measurements.
 namespace echinus {
 
-/// The material of a soft body, and where it starts. The numbers are in any units that fit together; with
-/// metres and kilograms they are SI units, and gravity is -9.81.
+/// The material and initial pose of a soft body. The numbers are in any consistent units; with metres and
+/// kilograms they are SI units, and gravity is -9.81.
 struct SoftBodyOptions {
     double density = 1000;      ///< mass / length^3, of water in kg/m^3; positive
     double young_modulus = 1e4; ///< mass / (length s^2), in pascals; positive. Soft tissue has 1e3 to 1e5
-    double poisson_ratio = 0.4; ///< 0 to 0.4999; towards 0.5 the volume is kept
-    double damping = 0;         ///< viscosity over the shear modulus, seconds; not negative
-    RigidTransform pose{};      ///< its rotation of unit length, to 1e-4
+    double poisson_ratio = 0.4; ///< 0 to 0.4999; near 0.5 the volume is preserved
+    double damping = 0;         ///< viscosity divided by the shear modulus, seconds; not negative
+    RigidTransform pose{};      ///< its rotation has unit length, to within 1e-4
     double scale = 1;           ///< a vertex starts at pose.to_world(scale * vertex); positive
-    std::vector<std::uint32_t> pins{};     ///< vertices that never move
+    std::vector<std::uint32_t> pins{};     ///< vertices that do not move
     std::vector<Attachment> attachments{}; ///< vertices that move with a collider
 };
 
-/// A body at rest. Its particles are the mesh's vertices, its faces the mesh's boundary(), in their order. A
-/// vertex has the mass of a quarter of each tetrahedron around it. It needs SolverKind::Newton. Time
-/// O(n log n).
-/// @throws Error InvalidMesh, naming a tetrahedron or vertex at fault, as require_valid_tetrahedra(), and
-/// when a vertex belongs to no tetrahedron; InvalidOptions for options out of range, and for vertices that
-/// the mesh does not have
+/// Makes a soft body at rest, in O(n log n). Its particles are the mesh's vertices and its faces the mesh's
+/// boundary(), in their order. The mass of a vertex is a quarter of the masses of the tetrahedra around it. A
+/// body needs SolverKind::Newton.
+/// @throws Error InvalidMesh, naming the tetrahedron or vertex, as require_valid_tetrahedra(), and if a
+/// vertex belongs to no tetrahedron; InvalidOptions for options out of range, and for vertices that the mesh
+/// does not have
 Deformable make_soft_body(const TetrahedralMesh& mesh, const SoftBodyOptions& options);
 
-/// Several deformables as one: cloth and organ, two organs. With self_collision they collide with each other.
-/// The particles, and all that names them, follow one part after the other. Time O(n).
-/// @throws Error InvalidOptions for a part that no simulation would take, naming the part and what is at
-/// fault
+/// Combines several deformables into one, such as a cloth and an organ, in O(n). With self_collision they
+/// collide with each other. The particles of the parts, and everything that refers to them, follow one after
+/// the other.
+/// @throws Error InvalidOptions for a part that no simulation would accept; the message names the part and
+/// its fault
 Deformable combine(std::span<const Deformable> parts);
 
-/// The same deformable, with all masses times a factor, finite and positive. Newton's cloth has its masses
-/// from its ClothMaterial.
+/// Multiplies all masses of a deformable by a finite, positive factor. With SolverKind::Newton the masses of
+/// cloth come from its ClothMaterial instead.
 Deformable with_masses_times(double factor, Deformable deformable);
 
 } // namespace echinus

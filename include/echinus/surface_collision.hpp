@@ -14,37 +14,39 @@
 
 ECHINUS_EXPORT_BEGIN
 
-/// Collision of faces for a solver of one's own (docs/own_solver.md).
+/// Collision of faces for your own solver (docs/own_solver.md).
 namespace echinus {
 
 struct SurfaceCollisionOptions {
-    double friction = 0.5;      ///< Coulomb's coefficient; 0 is ice
-    bool self_collision = true; ///< the faces do not meet each other either
-    /// Distance that layers keep from each other, units; the thickness if not given. Near small faces less.
+    double friction = 0.5;      ///< Coulomb's coefficient; 0 is no friction
+    bool self_collision = true; ///< the faces do not intersect each other either
+    /// Distance in units that layers keep from each other; by default the thickness. It is less near small
+    /// faces.
     std::optional<double> self_thickness{};
-    /// A start that intersects, or lies inside a closed model, is parted instead of refused, where it can be.
+    /// If possible, separate a start that intersects, or that lies inside a closed model, instead of refusing
+    /// it.
     bool untangle = false;
     unsigned thread_count = 1; ///< as in ParticleCollisionOptions
 };
 
-/// Keeps the faces that join the particles of any solver off models and off each other, not only the
-/// particles (ParticleCollision). Each step goes from a state in which nothing meets towards where the solver
-/// has put the particles, as far as it is proven that nothing meets on the way (docs/surfaces.md), with
-/// contact and friction as in SolverKind::Newton, of a surface without stiffness.
+/// Keeps not only the particles of any solver (ParticleCollision), but also the faces between them, off
+/// models and off each other. Each step goes from an intersection-free state towards the solver's positions,
+/// as far as the paths are proven to be free of collisions (docs/surfaces.md). Contact and friction are those
+/// of SolverKind::Newton for a surface without stiffness.
 ///
-/// No face meets a model, nor with self_collision another face, after any correct(); exceptions, which
-/// unresolved_count() counts, are those of SimulationOptions::surface_collision. Beside a collider without an
-/// exact map only particles collide. Contact begins to push at the thickness, and pushes the harder the
-/// nearer: after a hard impact little of it may be left. Copies are independent. Different objects
-/// may be used by different threads at a time, one object by one.
+/// After correct() no face intersects a model or, with self_collision, another face. The exceptions, which
+/// unresolved_count() counts, are those of SimulationOptions::surface_collision. With a collider without an
+/// exact map only particles collide. Contact begins to push at the thickness, and harder the closer a face
+/// is, so after a hard impact the distance may be small. Copies are independent. Different threads may use
+/// different objects at the same time, but only one thread may use an object at a time.
 class SurfaceCollision {
   public:
-    /// @param positions  [n] where the particles begin: no faces meet there, but see untangle
-    /// @param faces      of those particles; at least one
-    /// @param colliders  where they stand; their velocities do not count, but have to be finite
-    /// @param thickness  the distance to keep from colliders, units; 0 to 1e9. It is never less than a
-    ///                   fiftieth of the mean edge, and pushes off what begins nearer. docs/thickness.md
-    /// @throws Error InvalidOptions, naming what intersects; InvalidMesh
+    /// @param positions  [n] the initial positions, at which no faces may intersect (but see untangle)
+    /// @param faces      the faces between the particles; at least one
+    /// @param colliders  in their initial poses; their velocities are ignored, but must be finite
+    /// @param thickness  the distance in units to keep from colliders, 0 to 1e9; at least a fiftieth of the
+    /// mean edge length. Particles that begin closer are pushed off. See docs/thickness.md
+    /// @throws Error InvalidOptions, naming intersecting faces; InvalidMesh
     SurfaceCollision(std::vector<Vec3f> positions, std::vector<Triangle> faces,
                      std::vector<Collider> colliders, double thickness,
                      const SurfaceCollisionOptions& options = {});
@@ -54,36 +56,38 @@ class SurfaceCollision {
     SurfaceCollision(SurfaceCollision&& other) noexcept;
     SurfaceCollision& operator=(SurfaceCollision&& other) noexcept;
 
-    /// The solver's next step leads a collider there, evenly and the shorter way round; then it rests.
+    /// Moves a collider to a pose during the solver's next step, at constant velocity and rotating along the
+    /// shorter arc. Then it stops.
     /// @pre collider_index < colliders().size()
-    /// @throws Error InvalidOptions for a pose that is not finite or a rotation off unit length by over 1e-4
+    /// @throws Error InvalidOptions for a pose that is not finite, or a rotation whose length differs from 1
+    /// by more than 1e-4
     void set_collider_pose(std::size_t collider_index, const RigidTransform& pose);
 
-    /// Corrects the particles after a step of the solver, and moves the colliders. The step began where the
-    /// last one ended, positions().
+    /// Corrects the particles after a step of the solver, and moves the colliders. The step starts from
+    /// positions(), at which the last one ended.
     ///
-    /// A particle is corrected that ends farther than a thousandth of the thickness from where the solver has
-    /// put it; others keep their bits there, so that only positions() is free of intersections to the bit.
-    /// Its velocity gets the same change, and at an impact nothing of it leads into the surface. A particle
-    /// whose position is not finite, or farther than 1e12 units from where it was, stays there for others to
-    /// meet, and is not corrected.
+    /// A particle counts as corrected if it ends farther than a thousandth of the thickness from the solver's
+    /// position. Other particles keep the solver's bits in the array, so only positions() is exactly free of
+    /// intersections. The velocity of a corrected particle changes accordingly, and after an impact it has no
+    /// component into the surface. A particle whose position is not finite, or more than 1e12 units from the
+    /// previous one, keeps its previous position as an obstacle for others, and is not corrected.
     ///
-    /// Cost: a frame of a simulation with surface_collision (docs/surfaces_measured.md). Allocates while its
-    /// arrays of pairs grow.
-    /// @param positions   [n] in: where the solver has put the particles. Out: corrected
-    /// @param velocities  [n] in and out, units per second; or none
-    /// @param seconds     that the step took; positive
-    /// @return the particles whose positions were corrected, ascending; until the next call
-    /// @throws Error InvalidOptions for arrays of other sizes and a time that is not positive; then nothing
-    /// has changed. Diverged where a collider leaves all bounds; then the object is of no more use
+    /// The cost is that of a frame of a simulation with surface_collision (docs/surfaces_measured.md). The
+    /// function allocates when its arrays of pairs grow.
+    /// @param positions   [n] in: the solver's positions; out: corrected positions
+    /// @param velocities  [n] in and out, units per second; or empty
+    /// @param seconds     the duration of the step; positive
+    /// @return the indices of particles whose positions were corrected, ascending; valid until the next call
+    /// @throws Error InvalidOptions for arrays of other sizes and a duration that is not positive; then
+    /// nothing has changed. Diverged if a collider leaves all bounds; then the object cannot be used any more
     std::span<const std::uint32_t> correct(std::span<Vec3f> positions, std::span<Vec3f> velocities,
                                            double seconds);
 
-    /// [n] Where the particles are: nothing meets there.
+    /// [n] The present positions of the particles, which are free of intersections.
     const std::vector<Vec3f>& positions() const;
     const std::vector<Collider>& colliders() const;
-    /// Pairs of parts of faces for which no room was proven, summed over all steps: SimulationProfile::
-    /// squeezed_count.
+    /// Unresolved pairs of elements, for which no free space was proven, summed over all steps:
+    /// SimulationProfile::squeezed_count.
     std::uint64_t unresolved_count() const;
 
   private:

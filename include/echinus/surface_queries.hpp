@@ -13,89 +13,92 @@
 
 ECHINUS_EXPORT_BEGIN
 
-/// Queries of triangles against the surface of an exact map: which faces are near, how far the nearest is,
-/// does one meet the triangle, and when. They need no inside: open meshes are as good as closed ones.
+/// Queries of triangles against the surface of an exact map: the nearby faces, the distance to the nearest
+/// one, intersection tests, and sweeps. They need no inside, so open meshes work as well as closed ones.
 ///
-/// The surface is that of the map: the faces of the mesh with their vertices on the map's lattice, R / 2^20
-/// from where the mesh has them at most along each axis, without those that have no area there. Everything is
-/// in the map's frame; faces have their numbers in the mesh. A triangle with two equal corners is an edge,
-/// one with three a point. A triangle with a corner that is not finite is nowhere: it has no face near it.
+/// The surface is that of the map: the faces of the mesh with their vertices on the map's lattice, at most R
+/// / 2^20 from those of the mesh along each axis, without faces that have no area there. Everything is in the
+/// map's frame; faces are numbered as in the mesh. A triangle with two equal corners is an edge, and one with
+/// three equal corners a point. A triangle with a corner that is not finite is far from all faces.
 ///
-/// Any number of threads may query one map. The same answers on every machine and for every number of
+/// Any number of threads may query one map. The answers are the same on every machine and for any number of
 /// threads.
 namespace echinus {
 
 /// Three corners in the map's frame.
 using TrianglePoints = std::array<Vec3f, 3>;
 
-/// Has the triangle a point in common with the surface? Touching counts. Corners are snapped to the lattice
-/// as particles are, so that neighbours stay neighbours; then the answer is exact. Farther than 32 R from the
-/// map's centre the lattice is as coarse as floats of such lattice steps, and a corner farther than 10^32 R
-/// counts as not finite. Does not allocate.
+/// Does the triangle have a point in common with the surface? Touching counts. Corners are snapped to the
+/// lattice like particles, so that neighbours stay neighbours; then the answer is exact. Farther than 32 R
+/// from the map's centre the lattice is as coarse as floats in lattice steps, and a corner farther than 10^32
+/// R counts as not finite. The query does not allocate.
 bool intersects(const ExactMapView& map, const TrianglePoints& triangle_local) noexcept;
 
-/// How far a triangle is from the surface.
+/// The distance of a triangle from the surface.
 struct Clearance {
-    /// Not more than the distance between triangle and surface, rounding included, and mostly less by no more
-    /// than rounding: by 1e-6 of the distance and of the coordinates' extent together. 0 where they
+    /// A lower bound of the distance between triangle and surface, including rounding. It is usually less
+    /// only by rounding: by 1e-6 of the sum of the distance and the coordinates' extent. It is 0 if they
     /// intersect.
     float distance = std::numeric_limits<float>::infinity();
-    std::int32_t face = -1; ///< the face that is so far; -1 where none is within `farthest`
+    std::int32_t face = -1; ///< the face at this distance; -1 if none is within `farthest`
 
     bool found() const { return face != -1; }
 };
 
-/// The clearance of a triangle. Does not allocate. Cost: grows with the logarithm of the number of faces, and
-/// with the number of faces that are about as near as the nearest.
-/// @param farthest  beyond it, and beyond 10^12 R, nothing is looked for: the distance is then the smaller of
-///                  the two, and there is no face. Not negative
+/// The clearance of a triangle. The query does not allocate. The cost grows with the logarithm of the number
+/// of faces, and with the number of faces at about the same distance as the nearest one.
+/// @param farthest  the search distance, limited to 10^12 R: if nothing is found within it, the distance is
+/// this limit, and there is no face. Not negative
 Clearance clearance(const ExactMapView& map, const TrianglePoints& triangle_local,
                     float farthest = std::numeric_limits<float>::infinity()) noexcept;
 
-/// Where a moving triangle first comes to the surface.
+/// The point in time at which a moving triangle first reaches the surface.
 struct TriangleSweepHit {
-    /// Of the way. Until there the triangle does not meet the surface. 1 where it never does.
+    /// The fraction of the path up to which the triangle does not meet the surface; 1 if it does not meet it
+    /// at all.
     float fraction = 1;
-    std::int32_t face = -1; ///< the face that it comes to, or -1
+    std::int32_t face = -1; ///< the face that it reaches, or -1
 
     bool found() const { return face != -1; }
 };
 
-/// The way of a triangle whose corners each move along a straight line, at the same time. An edge is a
-/// triangle with two equal corners.
+/// Sweeps a triangle whose corners each move along a straight line at the same time. An edge is a triangle
+/// with two equal corners.
 ///
-/// Conservative advancement, until the triangle is within R / 2^17 of the surface, or within 10^-13 of how
-/// far from the centre the way begins and ends, if that is more. So where `fraction` is less than 1, it is
-/// that near to the surface, but for the rounding of `fraction` itself. A way that begins or ends farther
-/// than 10^11 R from the centre is not followed: nothing is met. Does not allocate.
+/// The query uses conservative advancement, until the triangle is within R / 2^17 of the surface or, if that
+/// is more, within 10^-13 of the distance of the path's ends from the centre. So if `fraction` is less than
+/// 1, the triangle is that close to the surface there, except for the rounding of `fraction` itself. A path
+/// that begins or ends farther than 10^11 R from the centre is not followed: nothing is met. The query does
+/// not allocate.
 ///
-/// Cost: up to 16 clearances. A triangle that has not arrived by then, because it slides along the surface or
-/// leaves it slowly, is moved on beside each face for itself that comes within its box, until the first is
-/// met: by a few distances of two triangles, and by no more than 36 + 2 log2(L / R) where its corners move
-/// alike; L is the length of the way. One that turns closely around an edge all the way is taken in parts:
-/// that may take some ten thousand distances, and more the farther its corners are.
+/// The cost is up to 16 clearances. A triangle that has not arrived by then, because it slides along the
+/// surface or leaves it slowly, is then advanced separately for each face within its box, until the first is
+/// met. This takes a few distances of two triangles per face, and at most 36 + 2 log2(L / R) if its corners
+/// move alike; L is the length of the path. The path of a triangle that turns closely around an edge is
+/// divided: that may take about ten thousand distances, and more the farther its corners are.
 TriangleSweepHit sweep(const ExactMapView& map, const TrianglePoints& from_local,
                        const TrianglePoints& to_local) noexcept;
 
 /// A list of faces for each of many triangles.
 struct FaceLists {
-    std::vector<std::uint32_t> offsets; ///< [triangle_count + 1] where each one's list begins; the last ends
-    std::vector<std::uint32_t> faces;   ///< list after list, each ascending
+    std::vector<std::uint32_t> offsets; ///< [triangle_count + 1] the start of each list; the last is the end
+    std::vector<std::uint32_t> faces;   ///< the lists one after the other, each ascending
 
     std::span<const std::uint32_t> operator[](std::size_t triangle) const {
         return {faces.data() + offsets[triangle], faces.data() + offsets[triangle + 1]};
     }
 };
 
-/// The faces that come within reach of each triangle: all whose distance is at most `reach`, and hardly one
+/// Finds the faces within reach of each triangle: all faces whose distance is at most `reach`, and hardly any
 /// that is farther by more than rounding (see Clearance).
 /// @param vertices_local  [vertex_count]
 /// @param triangles       [n] indices of vertices
-/// @param reach           not negative; 0: faces that touch. Beyond 10^12 R nothing is looked for
+/// @param reach           not negative; 0: only touching faces. Limited to 10^12 R
 /// @param lists           [n] out; keeps its memory from one call to the next
 /// @param thread_count    0: all cores
 /// @pre indices are in range; @throws Error InvalidOptions when the lists would hold 2^32 faces or more
-/// Allocates what the lists need. Cost: of a triangle that is far from the surface some 100 ns.
+///
+/// Allocates the memory of the lists. A triangle far from the surface takes about 100 ns.
 void faces_within_batch(const ExactMapView& map, StridedSpan<const Vec3f> vertices_local,
                         std::span<const Triangle> triangles, float reach, FaceLists& lists,
                         unsigned thread_count = 1);

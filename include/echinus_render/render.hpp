@@ -17,11 +17,12 @@
 
 ECHINUS_EXPORT_BEGIN
 
-/// Pictures by ray tracing on the processor: no window, no GPU. Library echinus::render (needs Embree 3 and
-/// libpng). Light and backdrop are fixed: the objects, their colours and the camera determine the picture.
+/// Rendering by ray tracing on the processor, without a window or a GPU. It belongs to the library
+/// echinus::render, which needs Embree 3 and libpng. Light and backdrop are fixed: the objects, their colours
+/// and the camera determine the picture.
 namespace echinus {
 
-// ---- What is drawn ----
+// ---- Objects ----
 
 /// An opaque sRGB colour, as in a style sheet; each component in [0, 1].
 struct Colour {
@@ -41,8 +42,8 @@ struct Colour {
 namespace palette {
 inline constexpr Colour kClay = Colour::from_hex(0xBDB5AA);      ///< the model: warm grey
 inline constexpr Colour kCloth = Colour::from_hex(0xB4584E);     ///< the front of a cloth
-inline constexpr Colour kClothBack = Colour::from_hex(0xD39A7C); ///< and its back
-inline constexpr Colour kMark = Colour::from_hex(0xFF1030);      ///< faces that something is wrong with
+inline constexpr Colour kClothBack = Colour::from_hex(0xD39A7C); ///< the back of a cloth
+inline constexpr Colour kMark = Colour::from_hex(0xFF1030);      ///< faces with a fault
 inline constexpr Colour kPage = Colour::from_hex(0xF9F8F6);      ///< the backdrop of every picture
 inline constexpr Colour kLayerBack = Colour::from_hex(0xE4DED4); ///< the inside of any layer: bone
 inline constexpr Colour kInk = Colour::from_hex(0x3A3936);       ///< text and wires
@@ -51,7 +52,7 @@ inline constexpr Colour kLayers[] = {
     Colour::from_hex(0x88CCEE), Colour::from_hex(0xAA4499), Colour::from_hex(0x999933),
     Colour::from_hex(0x332288), Colour::from_hex(0x117733), Colour::from_hex(0x882255),
 };
-/// From little to much, even in greyscale: five of Paul Tol's "YlOrBr".
+/// A scale from low to high values, also in greyscale: five of Paul Tol's "YlOrBr".
 inline constexpr Colour kScale[] = {
     Colour::from_hex(0xFFF7BC), Colour::from_hex(0xFEC44F), Colour::from_hex(0xFB9A29),
     Colour::from_hex(0xCC4C02), Colour::from_hex(0x662506),
@@ -63,28 +64,27 @@ struct RenderedObject {
     TriangleMesh mesh; ///< world frame, any unit
     Colour colour = palette::kClay;
     std::vector<Colour> face_colours;  ///< [face_count] in place of `colour`, or empty
-    std::optional<Colour> back_colour; ///< of the side on which faces turn clockwise; absent: as the front
+    std::optional<Colour> back_colour; ///< of the side on which faces are clockwise; by default as the front
     std::vector<std::uint32_t> marked_faces; ///< drawn in palette::kMark on both sides
-    /// Edges that bend less than this look smooth, the others sharp. 0 shows every face flat.
+    /// Edges with a smaller angle than this look smooth, the others sharp. With 0 every face looks flat.
     double crease_angle_deg = 40;
     double wire_width_px = 0; ///< width of the lines drawn along all edges; 0 draws none
 };
 
-// ---- From where ----
-
-/// The side from which a picture is taken.
+// ---- Camera ----
+/// The direction from which a picture is taken.
 struct View {
-    Vec3d up = {0, 0, 1}; ///< any length but zero
-    /// Where the camera stands, counter-clockwise about `up`. 0 is towards +x for up = z, and cyclically
-    /// towards +z for up = y, towards +y for up = x.
+    Vec3d up = {0, 0, 1}; ///< any length except 0
+    /// Direction of the camera, counter-clockwise about `up`. 0 is towards +x for up = z, and cyclically
+    /// towards +z for up = y and towards +y for up = x.
     double azimuth_deg = 35;
     double elevation_deg = 20;      ///< height above the horizon, in [-89, 89]
     double vertical_field_deg = 24; ///< in [1, 120]; smaller is more like a parallel projection
-    double margin = 0.07;           ///< free border, as a share of the picture's height, in [0, 0.35]
+    double margin = 0.07;           ///< empty border, as a share of the picture's height, in [0, 0.35]
     double footer = 0;              ///< extra room below for a caption: a share of the height, in [0, 0.25]
 };
 
-/// A pinhole camera and the floor under what it sees, in the objects' frame.
+/// A pinhole camera and the floor below the objects, in the objects' frame.
 struct Camera {
     Vec3d position;
     Vec3d right, up, forward; ///< orthonormal; forward goes into the picture
@@ -93,14 +93,14 @@ struct Camera {
     double floor_height = 0; ///< the floor is where dot(world_up, point) has this value
 };
 
-/// The camera that shows all points as large as the margin allows, on a floor at the height of the lowest.
-/// Using one camera for several pictures gives them a common scale.
+/// The camera that shows all points as large as the margin allows, on a floor at the height of the lowest
+/// point. Using one camera for several pictures gives them a common scale.
 /// @param aspect  width over height of the picture
-/// @throws Error InvalidOptions for a field of `view` or an aspect out of range, InvalidMesh when there is no
-/// point, a point is not finite, or all lie on one point
+/// @throws Error InvalidOptions for a field of `view` or an aspect out of range, InvalidMesh when there is
+/// no point, a point is not finite, or all points coincide
 Camera camera_for(std::span<const Vec3f> points, const View& view, double aspect);
 
-/// The same for all vertices that faces of the objects use.
+/// The camera for all vertices that faces of the objects use.
 /// @throws Error as above, and InvalidMesh as inspect() does
 Camera camera_for(std::span<const RenderedObject> objects, const View& view, double aspect);
 
@@ -119,16 +119,16 @@ struct RenderOptions {
 
     std::uint32_t width = 1000; ///< pixels, 1 to kMaxSide; width * height at most kMaxPixelCount
     std::uint32_t height = 750; ///< pixels, the same
-    std::uint32_t samples = 32; ///< rays per pixel, 1 to kMaxSampleCount; time grows with it, grain falls
-                                ///< with its square root. Powers of two are spread best.
+    std::uint32_t samples = 32; ///< rays per pixel, 1 to kMaxSampleCount. The time is proportional to it, and
+                                ///< noise falls with its square root. Powers of two are distributed best.
     unsigned thread_count = 0;  ///< 0: all cores. The picture does not depend on it.
-    /// Called with the finished share, ascending to 1, from one thread at a time. May throw to stop.
+    /// Called with the completed share, ascending to 1, from one thread at a time. It may throw to stop.
     std::function<void(double share)> progress;
 };
 
-/// Draws objects in soft light on a pale, endless floor. The same bytes on every run and for every thread
-/// count on one machine; another processor may round differently, since Embree picks other instructions.
-/// Cost: three rays per sample and non-empty pixel.
+/// Renders objects in soft light on a pale, endless floor. On one machine the picture is the same, byte for
+/// byte, in every run and for any number of threads; another processor may round differently, since Embree
+/// chooses other instructions. The cost is three rays per sample and non-empty pixel.
 /// @throws Error InvalidOptions for options out of range, face_colours of a wrong size or marked faces that
 /// do not exist, InvalidMesh as inspect() does, or when an object has no face with an area
 Image render(std::span<const RenderedObject> objects, const Camera& camera,
@@ -138,7 +138,7 @@ Image render(std::span<const RenderedObject> objects, const Camera& camera,
 /// @throws Error InvalidOptions when the picture is empty or its size is not that of its data
 std::vector<std::uint8_t> encode_png(const Image& image);
 
-/// Writes encode_png() to a file, to a temporary name first.
+/// Writes encode_png() to a file, under a temporary name first.
 /// @throws Error Unwritable, or as encode_png()
 void write_png(const std::filesystem::path& path, const Image& image);
 
@@ -147,13 +147,13 @@ void write_png(const std::filesystem::path& path, const Image& image);
 /// The position of a text relative to its anchor.
 enum class TextAlign : std::uint8_t { Left, Centre, Right };
 
-/// Draws one line of text in a built-in stroke font: printable ASCII; any other character becomes a box.
-/// @param x, y      anchor in pixels: the base line's left end, middle or right end
+/// Draws one line of text in a built-in stroke font with printable ASCII; any other character becomes a box.
+/// @param x, y      anchor in pixels: the left end, middle or right end of the baseline
 /// @param height_px height of a capital letter
 void draw_text(Image& image, double x, double y, std::string_view text, double height_px,
                Colour colour = palette::kInk, TextAlign align = TextAlign::Left);
 
-/// How far draw_text() advances, in pixels.
+/// The width of a text drawn by draw_text(), in pixels.
 double text_width(std::string_view text, double height_px);
 
 /// Puts pictures of one size side by side, row after row.
@@ -161,15 +161,15 @@ double text_width(std::string_view text, double height_px);
 /// RenderOptions allows
 Image arrange(std::span<const Image> pictures, std::uint32_t column_count);
 
-/// The paper's figures 2 and 3: the model, and beside it the surface rebuilt from its map, each layer of
-/// entries in its own colour with a legend.
+/// Draws the paper's figures 2 and 3: the model, and next to it the surface reconstructed from its map, with
+/// each layer of entries in its own colour and a legend.
 /// @param options  width is that of the whole figure
 /// @throws Error as camera_for() and render(), and InvalidMesh when the map has no surface
 Image draw_map_figure(const TriangleMesh& model, const DistanceMapView& map, const View& view,
                       const RenderOptions& options = {});
 
-/// The model, and beside it the mesh of an exact map: each face has the colour of the longest list that
-/// contains it, the faces that a query near it may have to test.
+/// Draws the model, and next to it the mesh of an exact map: each face is coloured by the longest list that
+/// contains it, the number of faces that a query near it may have to test.
 /// @param options  width is that of the whole figure
 /// @throws Error as camera_for() and render()
 Image draw_map_figure(const TriangleMesh& model, const ExactMapView& map, const View& view,

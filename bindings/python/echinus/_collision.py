@@ -26,11 +26,11 @@ class ParticleCollision:
     thickness
         The distance that particles keep from the surface (0 to 1e9).
     friction
-        Coulomb's coefficient between particle and model; 0 is ice (0 to 1e9).
+        Coulomb's coefficient between particle and model; 0 is no friction (0 to 1e9).
     allow_open_colliders
-        Accept exact maps of open meshes, for which nothing is promised.
+        Accept exact maps of open meshes, for which nothing is guaranteed.
     threads
-        Threads that share a step; 0: all cores. The same bits with any number (0 to 1024).
+        Threads that share a step; 0: all cores. The results do not depend on it, bit for bit (0 to 1024).
 
     Raises
     ------
@@ -134,15 +134,15 @@ class SurfaceCollision:
     thickness
         The distance to keep from colliders (0 to 1e9); never less than a fiftieth of the mean edge.
     friction
-        Coulomb's coefficient; 0 is ice (0 to 1e9).
+        Coulomb's coefficient; 0 is no friction (0 to 1e9).
     self_thickness
-        Distance that layers keep from each other; near small faces less. By default the thickness (0 to 1e9).
+        Distance that layers keep from each other; less near small faces. By default the thickness (0 to 1e9).
     self_collision
-        Faces do not meet each other either.
+        Faces do not intersect each other either.
     untangle
-        A start that intersects, or is inside the model, is parted instead of refused.
+        Separate a start that intersects, or is inside the model, instead of refusing it.
     threads
-        Threads that share a step; 0: all cores. The same bits with any number (0 to 1024).
+        Threads that share a step; 0: all cores. The results do not depend on it, bit for bit (0 to 1024).
 
     Raises
     ------

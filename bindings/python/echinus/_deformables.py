@@ -89,7 +89,7 @@ def make_cloth(
     Parameters
     ----------
     column_count
-        Particles along x; in all at most 2^24 (2 to 8388608).
+        Particles along x; at most 2^24 in total (2 to 8388608).
     row_count
         Particles along y. The particle (row, column) has the number row * column_count + column (2 to 8388608).
     width
@@ -97,11 +97,11 @@ def make_cloth(
     height
         Along y (positive).
     position
-        Where the middle of the sheet starts.
+        Initial pose of the middle of the sheet.
     rotation
         Unit quaternion w, x, y, z.
     pins
-        Particles that never move.
+        Particles that do not move.
 
     Raises
     ------
@@ -131,15 +131,15 @@ def make_cloth_of_mesh(
     rotation
         Unit quaternion w, x, y, z.
     scale
-        Factor of size, before the pose (1e-9 to 1e9).
+        Scale factor, applied before the pose (1e-9 to 1e9).
     rest_vertices
-        The shape at rest, where it is not that of the mesh: as many as the mesh has, or none.
+        The rest shape, if it differs from the mesh: as many vertices as the mesh has, or none.
     threads
         (n, 2) Edges without faces: threads and needles.
     pins
-        Vertices that never move.
+        Vertices that do not move.
     attachments
-        (n, 2) Vertices that move with a collider, and the number of that collider in the simulation.
+        (n, 2) Vertices that move with a collider, and the index of that collider in the simulation.
 
     Raises
     ------
@@ -174,19 +174,19 @@ def make_soft_body(
     young_modulus
         Stiffness; soft tissue has 1e3 to 1e5 Pa (1e-9 to 1e15 mass/(length s^2)).
     poisson_ratio
-        Towards 0.5 the volume is kept (0 to 0.4999).
+        Near 0.5 the volume is preserved (0 to 0.4999).
     damping
-        Viscosity over the shear modulus (0 to 1e9 s).
+        Viscosity divided by the shear modulus (0 to 1e9 s).
     position
         A vertex starts at position + rotation * (scale * vertex).
     rotation
         Unit quaternion w, x, y, z.
     scale
-        Factor of size, before the pose (1e-9 to 1e9).
+        Scale factor, applied before the pose (1e-9 to 1e9).
     pins
-        Vertices that never move.
+        Vertices that do not move.
     attachments
-        (n, 2) Vertices that move with a collider, and the number of that collider in the simulation.
+        (n, 2) Vertices that move with a collider, and the index of that collider in the simulation.
 
     Raises
     ------

@@ -289,14 +289,15 @@ class ExactMap(_Map[_core.ExactMap]):
     mesh
         Anything with ``vertices`` and ``faces``. It may be open: see :attr:`Contacts.certain`.
     cells_per_octant
-        Cells of directions, rounded down to a square number; 0: chosen by the mesh. More take memory and save time;
-        they never change an answer (0 to 262144).
+        Cells in each octant of directions, rounded down to a square number; 0: chosen by the mesh. More cells take
+        memory and save time; they do not change any answer (0 to 262144).
     budget
-        The finest map that takes no more; 0: no limit. Not together with a number of cells (0 to 4e9 bytes).
+        The largest size of the map, which gets as many cells as fit; 0: no limit. Not together with a number of
+        cells (0 to 4e9 bytes).
     rule
-        The inside where parts of the model overlap: their union, or where an odd number of them is.
+        The inside where parts of the model overlap: their union, or the points in an odd number of parts.
     centre
-        Where rays start: the centre of the bounding sphere, or a place searched for short lists.
+        The origin of the rays: the centre of the bounding sphere, or a point that is searched for short lists.
     threads
         Threads that build the map; 0: all cores. The map does not depend on it.
 
@@ -435,19 +436,19 @@ class DistanceMap(_Map[_core.DistanceMap]):
         Samples of longitude and of colatitude; (200, 200) by default. Grids ``"spherical"`` and
         ``"ellipsoidal"`` only.
     grid
-        How directions are divided.
+        The grid of directions.
     divisions
-        Octahedral grid and cube: into how many parts each edge is cut (4 to 4096).
+        Octahedral grid and cube: the number of parts of each edge (4 to 4096).
     correction
-        How vertices between the samples are corrected for.
+        The correction for vertices between the samples.
     entries
-        How a distance is stored; ``unorm16`` takes half the bytes and is off by at most 7.6e-6 R, on octahedral and
-        ellipsoidal grids 1.4e-5 R.
+        The format of a stored distance; ``unorm16`` takes half the bytes, with an error of at most 7.6e-6 R, on
+        octahedral and ellipsoidal grids 1.4e-5 R.
     pole_axis
         Spherical and ellipsoidal grid: axis of the mesh through the poles of the directions, where samples crowd.
     centre
-        Where rays start: the centre of the bounding sphere, or a place searched for few wrong answers beside the
-        surface.
+        The origin of the rays: the centre of the bounding sphere, or a point that is searched for few wrong answers
+        near the surface.
     threads
         Threads that build the map; 0: all cores. The map does not depend on it.
 

@@ -258,29 +258,29 @@ def repair(
         Vertices are distinguished by index: :func:`weld` first, or close seams, where equal positions mean the
         same vertex.
     drop_duplicate_faces
-        Of faces with the same three vertices drop opposite ones in pairs, and of the rest keep the first.
+        Among faces with the same three vertices, drop opposite ones in pairs, and keep the first of the rest.
     drop_doubled_patches
         Where two pairs of faces fill the same quadrilateral, each along its own diagonal, drop one pair.
     flip_inside_out
-        Turn round closed parts whose faces look inwards; cavities stay cavities.
+        Flip closed parts whose faces point inwards; cavities stay cavities.
     close_holes
-        Fill holes whose border has at most so many edges, with the triangles of least area. The rim of a sheet,
-        whose filling would have more than a third of the sheet's area, is no hole (0 to 256).
+        Fill holes whose border has at most this number of edges, with the triangulation of least area. The rim of a
+        sheet, whose filling would have more than a third of the sheet's area, is not a hole (0 to 256).
     drop_inner_faces
-        Drop faces with the solid on both sides, a patch of neighbours at a time, where no edge that stays is less
-        balanced for it: an engine in the body of a car.
+        Drop faces that have the solid on both sides, such as those of an engine in the body of a car: a patch of
+        neighbours at a time, if no remaining edge becomes less balanced.
     sheet_thickness
-        Make solids of the parts that are not closed, so thick, half of it on either side; 0: none (not negative).
+        Thicken open parts into solids of this thickness, half of it on either side; 0: none (not negative).
     close_seams
-        Join vertices at the edges of holes that are no farther apart than ``weld_distance``, and fill holes that
-        are no wider.
+        Join vertices at the borders of holes that are at most ``weld_distance`` apart, and fill holes that are no
+        wider.
     drop_loose_slivers
-        Drop faces without area at the edges of holes, unless they fill a seam.
+        Drop faces without area at the borders of holes, unless they fill a seam.
     orient_faces
-        Turn faces so that neighbours agree, in parts that are closed by themselves.
+        Flip faces so that neighbours agree, in parts that are closed by themselves.
     weld_distance
-        How wide seams may be; at most the radius of the bounding sphere, and at least 2^-21 of it counts, within
-        which maps take two vertices for one (not negative).
+        The width of seams, at most the radius of the bounding sphere. The effective value is at least 2^-21 of the
+        radius, within which maps join vertices anyway (not negative).
 
     Raises
     ------

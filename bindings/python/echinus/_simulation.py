@@ -111,81 +111,83 @@ class Simulation:
     frame_limit
         Of :meth:`run`.
     time_step
-        Seconds per frame. The paper's solver needs smaller ones: half of it takes twice the time there and leaves a
-        quarter of the stretch (1e-9 to 1e9 s).
+        Seconds per frame. The paper's solver needs smaller steps: there, halving the step doubles the computing
+        time and leaves a quarter of the stretch (1e-9 to 1e9 s).
     solver
-        ``newton``: a continuous material in SI units; ``jakobsen``: sticks and particles that collide, and nothing
-        else, as the paper has it.
+        ``newton``: a continuous material in SI units; ``jakobsen``: the paper's solver, with distance constraints
+        and collision of particles only.
     iteration_count
-        ``jakobsen`` only: relaxations per frame, each of all sticks and then of all contacts; more cost time and
-        leave less stretch (1 to 1e6).
+        ``jakobsen`` only: relaxations per frame, each of all distance constraints and then of all contacts; more
+        relaxations take longer and leave less stretch (1 to 1e6).
     newton_step_count
-        ``newton`` only: at most so many steps of Newton's method in a frame; fewer where it has converged (1 to
-        1000).
+        ``newton`` only: the largest number of steps of Newton's method per frame; fewer are taken if it converges
+        (1 to 1000).
     rest_frame_count
-        For how many frames in a row all particles have to be slow and near one place (1 to 1e9).
+        The number of consecutive frames for which all particles must be slow and near one position (1 to 1e9).
     rest_distance
-        How far a particle at rest may be from its place (0 to 1e9).
+        The largest distance of a particle at rest from its position (0 to 1e9).
     rest_speed
-        How fast a particle at rest may be at the end of a frame (at least 0 length/s).
+        The largest speed of a particle at rest at the end of a frame (at least 0 length/s).
     gravity
-        Where down is. A model whose y is up needs ``[0, -9.81, 0]`` (-1e9 to 1e9 length/s^2).
+        The acceleration of gravity. A model whose y axis points up needs ``[0, -9.81, 0]`` (-1e9 to 1e9
+        length/s^2).
     drag
         ``jakobsen`` only: share of the velocity that is lost per frame; another ``time_step`` makes another drag (0
         to 1).
     stiffness
-        ``jakobsen`` only: share of a stick's error that one relaxation removes, of structural, shear and bending
-        sticks (0 to 1.99).
+        ``jakobsen`` only: share of a constraint's error that one relaxation removes, for structural, shear and
+        bending constraints (0 to 1.99).
     thickness
-        Distance that the deformable keeps from colliders, by default half the mean length of structural sticks at
-        rest (0 to 1e9).
+        Distance that the deformable keeps from colliders, by default half the mean rest length of structural
+        constraints (0 to 1e9).
     self_thickness
-        Distance that layers keep from each other, with ``self_collision``; near small faces less. By default the
+        Distance that layers keep from each other, with ``self_collision``; less near small faces. By default the
         thickness (0 to 1e9).
     friction
-        Coulomb's coefficient between cloth and model; 0 is ice (0 to 1e9).
+        Coulomb's coefficient between cloth and model; 0 is no friction (0 to 1e9).
     bound
-        A particle farther than this from the middle of where all began ends the simulation as diverged; 0: 10 000
-        times the extent at the start (0 to 1e30).
+        The largest distance of a particle from the initial middle of all particles; a particle farther away ends
+        the simulation as diverged. 0: 10 000 times the initial extent (0 to 1e30).
     keep_free
         Rescue particles that would pass through an exact map.
     allow_open_colliders
-        Accept exact maps of open meshes, for which nothing is promised. Surface collision needs no such permission.
+        Accept exact maps of open meshes, for which nothing is guaranteed. Surface collision does not need this
+        option.
     surface_collision
-        Faces and edges keep off the model, too: none of them intersects it at the end of a frame, within limits. By
-        default ``true`` beside an exact map, but not under ``jakobsen``.
+        Faces and edges collide with the model, too: none of them intersects it at the end of a frame, within
+        limits. By default ``true`` with an exact map, but not with ``jakobsen``.
     self_collision
-        Nor do two faces of what deforms intersect; needs ``surface_collision``. By default as
+        Faces of the deformable do not intersect each other either; needs ``surface_collision``. By default as
         ``surface_collision``.
     untangle
-        A start that intersects, or is inside the model, is parted before the first frame instead of refused; needs
-        ``surface_collision``.
+        Separate a start that intersects, or is inside the model, before the first frame instead of refusing it;
+        needs ``surface_collision``.
     density
-        ``newton`` only, as the four that follow: mass of the cloth per area (1e-6 to 1e6 kg/m^2).
+        ``newton`` only, like the next four: mass of the cloth per area (1e-6 to 1e6 kg/m^2).
     stretch_stiffness
-        Force per width against stretching of warp and weft (1e-6 to 1e9 N/m).
+        Force per width that resists stretching of warp and weft (1e-6 to 1e9 N/m).
     shear_stiffness
-        Force per width against shear between them (0 to 1e9 N/m).
+        Force per width that resists shear between warp and weft (0 to 1e9 N/m).
     bending_stiffness
-        Moment per width and curvature against folding (0 to 1e6 N m).
+        Moment per width and curvature that resists bending (0 to 1e6 N m).
     damping
-        Viscosity of the cloth over its stiffness (0 to 1e6 s).
+        Viscosity of the cloth divided by its stiffness (0 to 1e6 s).
     newton_tolerance
-        ``newton`` only: a step of Newton's method has converged if the energy that it gains could move particles no
-        farther than this in the root mean square; share of the mean edge length (0 to 1).
+        ``newton`` only: tolerance of Newton's method, relative to the mean edge length. It has converged if the
+        decrease of the energy corresponds to a root-mean-square displacement of at most this length (0 to 1).
     air_drag
-        ``newton`` only: resistance of still air, the rate at which a velocity decays that nothing keeps up; 0 is a
-        vacuum (0 to 1e6 1/s).
+        ``newton`` only: resistance of still air, the rate at which a free velocity decays; 0 is a vacuum (0 to 1e6
+        1/s).
     wind
         Velocity of the air; needs ``wind_rate`` (-1e9 to 1e9 length/s).
     wind_rate
-        Of the air's velocity across a face, along its normal, particles take on so much per second: the higher, the
-        lighter the cloth. 0: no air. Without ``wind`` the air is at rest and brakes (0 to 1e9 1/s).
+        The share of the air's velocity relative to a face, along its normal, that particles take on per second;
+        higher for lighter cloth. 0: no air. Without ``wind`` the air is at rest and slows motion (0 to 1e9 1/s).
     pressure
-        ``newton`` only: pressure inside the closed pieces of cloth, beyond that around them; constant, as that of a
-        pump (0 to 1e9 N/m^2).
+        ``newton`` only: pressure inside the closed pieces of cloth in excess of the surrounding pressure; constant,
+        like that of a pump (0 to 1e9 N/m^2).
     threads
-        Threads that compute a frame; 0: all cores. The same bits with any number (0 to 1024).
+        Threads that compute a frame; 0: all cores. The results do not depend on it, bit for bit (0 to 1024).
 
     Raises
     ------

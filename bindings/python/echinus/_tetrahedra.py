@@ -153,11 +153,11 @@ def tetrahedralize(
     size
         The edge of the lattice's cubes, in the model's unit. Either this or ``count``; 0: the other (not negative).
     count
-        About so many tetrahedra: the size is found by trying.
+        The target number of tetrahedra: the size is found by trial.
     most_tetrahedra
-        More tetrahedra are refused.
+        The largest number of tetrahedra; more are refused.
     threads
-        Threads that work on it; 0: all cores. The result does not depend on it.
+        Threads; 0: all cores. The result does not depend on it.
 
     Raises
     ------

@@ -275,22 +275,23 @@ export interface ExactMapOptions {
     kind?: 'exact';
     // Options: exact_map. By bindings/generate_options from bindings/options.toml: edit that.
     /**
-     * Cells of directions, rounded down to a square number; 0: chosen by the mesh. More take memory and save time; they
-     * never change an answer (0 to 262144). Default: by the mesh.
+     * Cells in each octant of directions, rounded down to a square number; 0: chosen by the mesh. More cells take
+     * memory and save time; they do not change any answer (0 to 262144). Default: by the mesh.
      */
     cells_per_octant?: number;
     /**
-     * The finest map that takes no more; 0: no limit. Not together with a number of cells (0 to 4e9 bytes). Default:
-     * none.
+     * The largest size of the map, which gets as many cells as fit; 0: no limit. Not together with a number of cells (0
+     * to 4e9 bytes). Default: none.
      */
     budget?: number;
     /**
-     * The inside where parts of the model overlap: their union, or where an odd number of them is. Default:
+     * The inside where parts of the model overlap: their union, or the points in an odd number of parts. Default:
      * `"nonzero"`.
      */
     rule?: 'nonzero' | 'parity';
     /**
-     * Where rays start: the centre of the bounding sphere, or a place searched for short lists. Default: `"sphere"`.
+     * The origin of the rays: the centre of the bounding sphere, or a point that is searched for short lists. Default:
+     * `"sphere"`.
      */
     centre?: 'sphere' | 'search';
     // End of options.
@@ -298,17 +299,17 @@ export interface ExactMapOptions {
 export interface DistanceMapOptions {
     kind: 'distance';
     // Options: distance_map. By bindings/generate_options from bindings/options.toml: edit that.
-    /** How directions are divided. Default: `"spherical"`. */
+    /** The grid of directions. Default: `"spherical"`. */
     grid?: 'spherical' | 'octahedral' | 'cube' | 'ellipsoidal';
     /** Spherical and ellipsoidal grid: samples of longitude, of colatitude (4 to 8192). Default: `[200, 200]`. */
     directions?: readonly [number, number];
-    /** Octahedral grid and cube: into how many parts each edge is cut (4 to 4096). Default: 100. */
+    /** Octahedral grid and cube: the number of parts of each edge (4 to 4096). Default: 100. */
     divisions?: number;
-    /** How vertices between the samples are corrected for. Default: `"signed"`. */
+    /** The correction for vertices between the samples. Default: `"signed"`. */
     correction?: 'none' | 'paper' | 'signed';
     /**
-     * How a distance is stored; `unorm16` takes half the bytes and is off by at most 7.6e-6 R, on octahedral and
-     * ellipsoidal grids 1.4e-5 R. Default: `"float32"`.
+     * The format of a stored distance; `unorm16` takes half the bytes, with an error of at most 7.6e-6 R, on octahedral
+     * and ellipsoidal grids 1.4e-5 R. Default: `"float32"`.
      */
     entries?: 'float32' | 'unorm16';
     /**
@@ -317,8 +318,8 @@ export interface DistanceMapOptions {
      */
     pole_axis?: 'x' | 'y' | 'z';
     /**
-     * Where rays start: the centre of the bounding sphere, or a place searched for few wrong answers beside the
-     * surface. Default: `"sphere"`.
+     * The origin of the rays: the centre of the bounding sphere, or a point that is searched for few wrong answers near
+     * the surface. Default: `"sphere"`.
      */
     centre?: 'sphere' | 'search';
     // End of options.
@@ -549,12 +550,12 @@ export interface SceneDescription {
         angular_velocity?: Vec3;
         // Options: thickness. By bindings/generate_options from bindings/options.toml: edit that.
         /**
-         * Distance that the deformable keeps from colliders, by default half the mean length of structural sticks at
-         * rest (0 to 1e9). Default: half the spacing.
+         * Distance that the deformable keeps from colliders, by default half the mean rest length of structural
+         * constraints (0 to 1e9). Default: half the spacing.
          */
         thickness?: number;
         /**
-         * Distance that layers keep from each other, with `self_collision`; near small faces less. By default the
+         * Distance that layers keep from each other, with `self_collision`; less near small faces. By default the
          * thickness (0 to 1e9). Default: `cloth.thickness`.
          */
         self_thickness?: number;
@@ -576,27 +577,27 @@ export interface SceneDescription {
         thickness?: number;
         self_thickness?: number;
         // Options: jakobsen. By bindings/generate_options from bindings/options.toml: edit that.
-        /** `jakobsen` only: stiffness between neighbours of a row or column, or along an edge of a mesh: against stretching; 0 to 1.99. Default: 1. */
+        /** `jakobsen` only: stiffness between neighbours in a row or column, or along an edge of a mesh, against stretching; 0 to 1.99. Default: 1. */
         structural?: number;
-        /** `jakobsen` only: stiffness between neighbours along a diagonal; 0 to 1.99. Default: 1. */
+        /** `jakobsen` only: stiffness between neighbours along a diagonal, against shear; 0 to 1.99. Default: 1. */
         shear?: number;
-        /** `jakobsen` only: stiffness between every second particle of a row or column, or across an edge between two faces: against folding; 0 to 1.99. Default: 0.3. */
+        /** `jakobsen` only: stiffness between every second particle in a row or column, or across an edge between two faces, against bending; 0 to 1.99. Default: 0.3. */
         bending?: number;
         // End of options.
         // Options: newton. By bindings/generate_options from bindings/options.toml: edit that.
-        /** `newton` only, as the four that follow: mass of the cloth per area (1e-6 to 1e6 kg/m^2). Default: 0.2. */
+        /** `newton` only, like the next four: mass of the cloth per area (1e-6 to 1e6 kg/m^2). Default: 0.2. */
         density?: number;
-        /** Force per width against stretching of warp and weft (1e-6 to 1e9 N/m). Default: 1000. */
+        /** Force per width that resists stretching of warp and weft (1e-6 to 1e9 N/m). Default: 1000. */
         stretch_stiffness?: number;
-        /** Force per width against shear between them (0 to 1e9 N/m). Default: 400. */
+        /** Force per width that resists shear between warp and weft (0 to 1e9 N/m). Default: 400. */
         shear_stiffness?: number;
-        /** Moment per width and curvature against folding (0 to 1e6 N m). Default: 1e-5. */
+        /** Moment per width and curvature that resists bending (0 to 1e6 N m). Default: 1e-5. */
         bending_stiffness?: number;
-        /** Viscosity of the cloth over its stiffness (0 to 1e6 s). Default: 0.01. */
+        /** Viscosity of the cloth divided by its stiffness (0 to 1e6 s). Default: 0.01. */
         damping?: number;
         /**
-         * `newton` only: pressure inside the closed pieces of cloth, beyond that around them; constant, as that of a
-         * pump (0 to 1e9 N/m^2). Default: 0.
+         * `newton` only: pressure inside the closed pieces of cloth in excess of the surrounding pressure; constant,
+         * like that of a pump (0 to 1e9 N/m^2). Default: 0.
          */
         pressure?: number;
         // End of options.
@@ -606,77 +607,86 @@ export interface SceneDescription {
          * 1). Default: 0.005.
          */
         drag?: number;
-        /** Coulomb's coefficient between cloth and model; 0 is ice (0 to 1e9). Default: 0.5. */
+        /** Coulomb's coefficient between cloth and model; 0 is no friction (0 to 1e9). Default: 0.5. */
         friction?: number;
         /**
-         * `newton` only: resistance of still air, the rate at which a velocity decays that nothing keeps up; 0 is a
-         * vacuum (0 to 1e6 1/s). Default: 0.5.
+         * `newton` only: resistance of still air, the rate at which a free velocity decays; 0 is a vacuum (0 to 1e6
+         * 1/s). Default: 0.5.
          */
         air_drag?: number;
         // End of options.
     };
     // Options: surfaces. By bindings/generate_options from bindings/options.toml: edit that.
     /**
-     * Faces and edges keep off the model, too: none of them intersects it at the end of a frame, within limits.
-     * Default: `true` beside an exact map, but not under `jakobsen`.
+     * Faces and edges collide with the model, too: none of them intersects it at the end of a frame, within limits.
+     * Default: `true` with an exact map, but not with `jakobsen`.
      */
     surface_collision?: boolean;
-    /** Nor do two faces of what deforms intersect; needs `surface_collision`. Default: as `surface_collision`. */
+    /**
+     * Faces of the deformable do not intersect each other either; needs `surface_collision`. Default: as
+     * `surface_collision`.
+     */
     self_collision?: boolean;
     /**
-     * A start that intersects, or is inside the model, is parted before the first frame instead of refused; needs
+     * Separate a start that intersects, or is inside the model, before the first frame instead of refusing it; needs
      * `surface_collision`. Default: false.
      */
     untangle?: boolean;
     // End of options.
     // Options: solver. By bindings/generate_options from bindings/options.toml: edit that.
     /**
-     * Seconds per frame. The paper's solver needs smaller ones: half of it takes twice the time there and leaves a
-     * quarter of the stretch (1e-9 to 1e9 s). Default: 1/60; 1/240 under `jakobsen`.
+     * Seconds per frame. The paper's solver needs smaller steps: there, halving the step doubles the computing time and
+     * leaves a quarter of the stretch (1e-9 to 1e9 s). Default: 1/60; 1/240 with `jakobsen`.
      */
     time_step?: number;
     /**
-     * `newton`: a continuous material in SI units; `jakobsen`: sticks and particles that collide, and nothing else, as
-     * the paper has it. Default: `"newton"`.
+     * `newton`: a continuous material in SI units; `jakobsen`: the paper's solver, with distance constraints and
+     * collision of particles only. Default: `"newton"`.
      */
     solver?: 'newton' | 'jakobsen';
     /**
-     * `jakobsen` only: relaxations per frame, each of all sticks and then of all contacts; more cost time and leave
-     * less stretch (1 to 1e6). Default: 10.
+     * `jakobsen` only: relaxations per frame, each of all distance constraints and then of all contacts; more
+     * relaxations take longer and leave less stretch (1 to 1e6). Default: 10.
      */
     iterations?: number;
     /**
-     * `newton` only: at most so many steps of Newton's method in a frame; fewer where it has converged (1 to 1000).
-     * Default: 4.
+     * `newton` only: the largest number of steps of Newton's method per frame; fewer are taken if it converges (1 to
+     * 1000). Default: 4.
      */
     newton_steps?: number;
     /**
-     * Where down is. A model whose y is up needs `[0, -9.81, 0]` (-1e9 to 1e9 length/s^2). Default: `[0, 0, -9.81]`.
+     * The acceleration of gravity. A model whose y axis points up needs `[0, -9.81, 0]` (-1e9 to 1e9 length/s^2).
+     * Default: `[0, 0, -9.81]`.
      */
     gravity?: Vec3;
-    /** Threads that compute a frame; 0: all cores. The same bits with any number (0 to 1024). Default: 1. */
+    /**
+     * Threads that compute a frame; 0: all cores. The results do not depend on it, bit for bit (0 to 1024). Default: 1.
+     */
     thread_count?: number;
     /**
-     * `newton` only: a step of Newton's method has converged if the energy that it gains could move particles no
-     * farther than this in the root mean square; share of the mean edge length (0 to 1). Default: 0.0005.
+     * `newton` only: tolerance of Newton's method, relative to the mean edge length. It has converged if the decrease
+     * of the energy corresponds to a root-mean-square displacement of at most this length (0 to 1). Default: 0.0005.
      */
     newton_tolerance?: number;
     /** Velocity of the air; needs `wind_rate` (-1e9 to 1e9 length/s). Default: `[0, 0, 0]`. */
     wind?: Vec3;
     /**
-     * Of the air's velocity across a face, along its normal, particles take on so much per second: the higher, the
-     * lighter the cloth. 0: no air. Without `wind` the air is at rest and brakes (0 to 1e9 1/s). Default: 0.
+     * The share of the air's velocity relative to a face, along its normal, that particles take on per second; higher
+     * for lighter cloth. 0: no air. Without `wind` the air is at rest and slows motion (0 to 1e9 1/s). Default: 0.
      */
     wind_rate?: number;
     // End of options.
     frame_limit?: number;
     at_rest?: {
         // Options: rest. By bindings/generate_options from bindings/options.toml: edit that.
-        /** For how many frames in a row all particles have to be slow and near one place (1 to 1e9). Default: 60. */
+        /**
+         * The number of consecutive frames for which all particles must be slow and near one position (1 to 1e9).
+         * Default: 60.
+         */
         frames?: number;
-        /** How far a particle at rest may be from its place (0 to 1e9). Default: 0.001. */
+        /** The largest distance of a particle at rest from its position (0 to 1e9). Default: 0.001. */
         distance?: number;
-        /** How fast a particle at rest may be at the end of a frame (at least 0 length/s). Default: 0.1. */
+        /** The largest speed of a particle at rest at the end of a frame (at least 0 length/s). Default: 0.1. */
         speed?: number;
         // End of options.
     };
@@ -717,11 +727,11 @@ export interface Body {
     density?: number;
     /** Stiffness; soft tissue has 1e3 to 1e5 Pa (1e-9 to 1e15 mass/(length s^2)). Default: 10000. */
     young_modulus?: number;
-    /** Towards 0.5 the volume is kept (0 to 0.4999). Default: 0.4. */
+    /** Near 0.5 the volume is preserved (0 to 0.4999). Default: 0.4. */
     poisson_ratio?: number;
-    /** Viscosity over the shear modulus (0 to 1e9 s). Default: 0. */
+    /** Viscosity divided by the shear modulus (0 to 1e9 s). Default: 0. */
     damping?: number;
-    /** Factor of size, before the pose (1e-9 to 1e9). Default: 1. */
+    /** Scale factor, applied before the pose (1e-9 to 1e9). Default: 1. */
     scale?: number;
     // End of options.
     position?: Vec3;
@@ -765,7 +775,7 @@ export interface MeshCloth {
     mesh: string | Shape;
     rest_mesh?: string | Shape;
     // Options: mesh_cloth. By bindings/generate_options from bindings/options.toml: edit that.
-    /** Factor of size, before the pose (1e-9 to 1e9). Default: 1. */
+    /** Scale factor, applied before the pose (1e-9 to 1e9). Default: 1. */
     scale?: number;
     // End of options.
     pins?: VertexChoice;

@@ -6,42 +6,44 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/// Echinus for C99 and for whatever calls C. Library libechinus-c; docs/c.md begins with a whole program.
+/// Echinus for C99 and for languages that call C. The library is libechinus-c; docs/c.md begins with a
+/// complete program.
 ///
-/// Errors. A function that can fail returns a status, and echinus_last_error() has a sentence about it. No
-/// exception crosses this border. A function that fails sets the handle that it would have made to NULL, and
-/// changes nothing else unless its declaration says so.
+/// Errors. A function that can fail returns a status, and echinus_last_error() returns a message. No
+/// exception leaves a function. A function that fails sets its output handle to NULL, and changes nothing
+/// else unless its declaration says so.
 ///
 /// Null pointers. An argument that is NULL is ECHINUS_INVALID_ARGUMENT, unless its declaration says "or
 /// NULL". An array of 0 elements may be NULL. The functions that end in _destroy take NULL and do nothing.
 /// Functions that return a value and no status return 0 or NULL for a handle that is NULL.
 ///
-/// Ownership. A handle that a function gives through an echinus_..._ ** belongs to the caller, who destroys
-/// it once by the _destroy of its type. A function reads during the call what it takes as const, and does not
-/// keep it, unless its declaration says so. A pointer that it returns belongs to the handle that was asked.
+/// Ownership. The caller owns a handle that a function returns through an echinus_..._ **, and destroys it
+/// once with the _destroy function of its type. A function reads const arguments only during the call, unless
+/// its declaration says otherwise. A returned pointer belongs to the handle that was passed.
 ///
-/// Threads. Meshes, maps, tetrahedra, deformables, scenes and arrays never change: any number of threads may
-/// use one at once. A builder and a simulation are for one thread at a time. thread_count is how many threads
-/// a call may use; 0 stands for all cores. No answer depends on it.
+/// Threads. Meshes, maps, tetrahedra, deformables, scenes and arrays are immutable: any number of threads may
+/// use one at once. A builder or a simulation may be used by one thread at a time. thread_count is the number
+/// of threads that a call may use; 0 means all cores. No answer depends on it.
 ///
-/// Strides. Points are x, y, z as float. A batch of them is the address of the first x, a count, and the
-/// bytes from one x to the next: a multiple of 4 and at least 12; 0 stands for 12. Answers lie one after the
-/// other and do not overlap the points.
+/// Strides. Points are x, y, z as float. A batch is given by the address of the first x, a count, and the
+/// stride in bytes from one x to the next: a multiple of 4, at least 12; 0 means 12. Answers are written
+/// contiguously and must not overlap the points.
 ///
-/// Structs that may grow begin with their size. Options are filled by their _init function, which writes the
-/// defaults and the size; of results the caller sets .size before the call. New members will be added at the
-/// end, and zero will be their default. So a program and a library of different versions understand each
-/// other, and a program that sets a member which the library does not have gets ECHINUS_INVALID_ARGUMENT.
-/// Flags are 0 or 1, and what is called reserved in options is 0; other numbers are ECHINUS_INVALID_ARGUMENT.
+/// Extensible structs begin with their size. An _init function fills options with the defaults and the size;
+/// for results the caller sets .size before the call. New members will be added at the end with a default of
+/// zero. So a program and a library of different versions are compatible, and a program that sets a member
+/// which the library does not have gets ECHINUS_INVALID_ARGUMENT. Flags are 0 or 1, and reserved members of
+/// options are 0; other values are ECHINUS_INVALID_ARGUMENT.
 ///
-/// Frames, units and words are those of docs/conventions.md: right-handed, lengths in the caller's unit,
+/// Frames, units and terms are those of docs/conventions.md: right-handed, lengths in the caller's unit,
 /// angles in radians, faces counter-clockwise seen from outside, rotations as unit quaternions w, x, y, z.
-/// "Local" is the frame of the mesh that a map was built from, "world" is where a collider stands.
+/// "Local" is the frame of the mesh from which a map was built, "world" the frame in which a collider has its
+/// pose.
 ///
-/// Origins. A mesh whose file has it so far from 0 that floats could not hold its shape has an origin, and so
-/// have its map and its tetrahedra: everything local is then relative to it. It is 0 for all others.
-/// echinus_to_local() makes local points of doubles. A collider's pose and scale place the file's frame:
-/// world = pose (scale (origin + local)). Simulations refuse an origin that is not 0.
+/// Origins. A mesh that is so far from 0 in its file that floats could not represent its shape has an origin,
+/// and so have its map and its tetrahedra: local positions are then relative to the origin, which is 0 for
+/// all other meshes. echinus_to_local() converts doubles to local points. A collider's pose and scale place
+/// the file's frame: world = pose (scale (origin + local)). Simulations refuse an origin that is not 0.
 
 #ifdef __cplusplus
 extern "C" {
@@ -57,29 +59,30 @@ extern "C" {
 
 // ---- Errors and the library ----
 
-/// The kinds of errors. Values are only ever added.
+/// The kinds of errors. Later versions may add values, but do not remove any.
 typedef enum echinus_status {
     ECHINUS_OK = 0,
     ECHINUS_UNREADABLE = 1,          ///< a file does not exist, is a directory, or cannot be read
     ECHINUS_UNWRITABLE = 2,          ///< a file cannot be written: permission, missing folder, full disk
-    ECHINUS_WRONG_FORMAT = 3,        ///< the bytes are not of the format that the name or the reader expects
+    ECHINUS_WRONG_FORMAT = 3,        ///< the bytes do not have the format that the name or the reader expects
     ECHINUS_DAMAGED = 4,             ///< the right format, but truncated or self-contradictory
     ECHINUS_UNSUPPORTED_VERSION = 5, ///< a map file of a version that this library does not read
     ECHINUS_INVALID_MESH = 6,        ///< no faces, a coordinate that is not finite, an index out of range
     ECHINUS_INVALID_OPTIONS = 7,     ///< an option outside the range that its declaration states
-    ECHINUS_INVALID_SCENE = 8,       ///< a scene with an unknown key, a missing one or a value out of range
+    ECHINUS_INVALID_SCENE = 8,       ///< a scene with an unknown key, a missing key or a value out of range
     ECHINUS_DIVERGED = 9,            ///< a simulation whose positions are not finite or have left all bounds
     ECHINUS_INVALID_ARGUMENT =
         100, ///< NULL, a wrong size or stride, an index out of range, a map of another kind
     ECHINUS_OUT_OF_MEMORY = 101, ///< memory did not suffice
-    ECHINUS_INTERNAL = 102       ///< a fault of the library: please report it
+    ECHINUS_INTERNAL = 102       ///< a bug of the library: please report it
 } echinus_status;
 
-/// The name of a status as it stands above, "ECHINUS_OK" for instance; "unknown status" for any other number.
+/// The name of a status as declared above, for instance "ECHINUS_OK"; "unknown status" for any other number.
 ECHINUS_API const char* echinus_status_name(echinus_status status);
 
-/// One sentence about the last call of this thread that failed: which file, face, byte or argument, what was
-/// found and what was expected. Empty when none has failed. Stays until the next failure on this thread.
+/// The message of the last failed call on this thread: one sentence that names the file, face, byte or
+/// argument, the value that was found and the one that was expected. It is empty if no call has failed, and
+/// is kept until the next failure on this thread.
 ECHINUS_API const char* echinus_last_error(void);
 
 /// The version of the library that the program runs with, such as "0.2.0". ECHINUS_VERSION_STRING is that of
@@ -90,15 +93,15 @@ ECHINUS_API const char* echinus_version(void);
 /// only.
 ECHINUS_API const char* echinus_instruction_set(void);
 
-/// The sets that this machine has, the widest first: the one of this number, or NULL beyond the last.
+/// The sets that this machine supports, by index, the widest first; NULL beyond the last.
 ECHINUS_API const char* echinus_available_instruction_set(size_t number);
 
-/// Selects another set for the whole process, from the next query on. Any thread.
+/// Selects another set for the whole process, from the next query on. Any thread may call this.
 ECHINUS_API echinus_status echinus_use_instruction_set(const char* name);
 
 // ---- Arrays ----
 
-/// An array whose length only the library knows beforehand. The function that gives it names the type of its
+/// An array whose length is determined by the library. The function that returns it documents the type of its
 /// elements.
 typedef struct echinus_array echinus_array;
 
@@ -109,7 +112,7 @@ ECHINUS_API void echinus_array_destroy(echinus_array* array);
 
 // ---- Meshes ----
 
-/// Triangles with common vertices, all indices in range and all coordinates that faces use finite.
+/// Triangles with shared vertices. All indices are in range, and all coordinates that faces use are finite.
 typedef struct echinus_mesh echinus_mesh;
 
 /// Copies vertices and faces. Nothing is repaired: echinus_mesh_inspect() reports faults.
@@ -120,34 +123,34 @@ ECHINUS_API echinus_status echinus_mesh_create(const float* vertices, size_t ver
                                                size_t vertex_stride, const uint32_t* faces, size_t face_count,
                                                echinus_mesh** mesh);
 
-/// The same of vertices in double. Where floats could not hold the shape, the mesh has an origin.
+/// Copies vertices in double and faces. If floats could not represent the shape, the mesh has an origin.
 /// @param vertices  [3 vertex_count]
 ECHINUS_API echinus_status echinus_mesh_create_double(const double* vertices, size_t vertex_count,
                                                       const uint32_t* faces, size_t face_count,
                                                       echinus_mesh** mesh);
 
-/// Reads OBJ, PLY, STL, OFF, glTF, GLB or 3DS, by the extension of the name. All meshes of the file are
+/// Reads OBJ, PLY, STL, OFF, glTF, GLB or 3DS, as the file name's extension says. All meshes of the file are
 /// joined, polygons are triangulated and equal positions are welded.
 /// @return ECHINUS_UNREADABLE, ECHINUS_WRONG_FORMAT, ECHINUS_DAMAGED or ECHINUS_INVALID_MESH
 ECHINUS_API echinus_status echinus_mesh_read(const char* path, echinus_mesh** mesh);
 
-/// Writes OBJ, PLY (binary), STL (binary) or OFF, by the extension of the name. The file appears whole or not
-/// at all.
+/// Writes OBJ, PLY (binary), STL (binary) or OFF, as the file name's extension says. The file is written
+/// atomically.
 /// @return ECHINUS_UNWRITABLE or ECHINUS_WRONG_FORMAT
 ECHINUS_API echinus_status echinus_mesh_write(const echinus_mesh* mesh, const char* path);
 
-/// A torus about the z axis, centred at the origin like the other two shapes.
+/// Makes a torus about the z axis, centred at the origin like the other two shapes.
 /// @return ECHINUS_INVALID_OPTIONS unless 0 < minor_radius < major_radius, their sum is finite as a float,
 /// and both counts are at least 3
 ECHINUS_API echinus_status echinus_mesh_torus(double major_radius, double minor_radius,
                                               uint32_t major_segments, uint32_t minor_segments,
                                               echinus_mesh** mesh);
-/// A sphere of meridians and parallels with its poles on the z axis.
+/// Makes a sphere of meridians and parallels with its poles on the z axis.
 /// @return ECHINUS_INVALID_OPTIONS unless radius > 0 and finite as a float, meridian_count >= 3 and
 /// parallel_count >= 2
 ECHINUS_API echinus_status echinus_mesh_sphere(double radius, uint32_t meridian_count,
                                                uint32_t parallel_count, echinus_mesh** mesh);
-/// A box, each side cut into segments x segments squares of two faces.
+/// Makes a box, with each side divided into segments x segments squares of two faces.
 /// @param size  [3] lengths of the edges
 /// @return ECHINUS_INVALID_OPTIONS unless all lengths are positive and finite as floats, and segments >= 1
 ECHINUS_API echinus_status echinus_mesh_box(const double* size, uint32_t segments, echinus_mesh** mesh);
@@ -157,7 +160,7 @@ ECHINUS_API void echinus_mesh_destroy(echinus_mesh* mesh);
 ECHINUS_API size_t echinus_mesh_vertex_count(const echinus_mesh* mesh);
 /// [3 vertex_count] x, y, z, relative to the origin
 ECHINUS_API const float* echinus_mesh_vertices(const echinus_mesh* mesh);
-/// [3] where the frame of the vertices begins in that of the file; 0 for most meshes
+/// [3] the origin of the vertices' frame in the frame of the file; 0 for most meshes
 ECHINUS_API const double* echinus_mesh_origin(const echinus_mesh* mesh);
 ECHINUS_API size_t echinus_mesh_face_count(const echinus_mesh* mesh);
 /// [3 face_count]
@@ -165,80 +168,81 @@ ECHINUS_API const uint32_t* echinus_mesh_faces(const echinus_mesh* mesh);
 
 #define ECHINUS_FIRST_FACE_COUNT 8
 
-/// How often a fault occurs, and the first faces at which it does.
+/// The number of occurrences of a fault, and the first faces at which it occurs.
 typedef struct echinus_fault {
     uint64_t count;
-    uint32_t first_face_count; ///< how many of the following are set
+    uint32_t first_face_count; ///< number of valid elements in first_faces
     uint32_t first_faces[ECHINUS_FIRST_FACE_COUNT];
     uint32_t reserved; ///< 0
 } echinus_fault;
 
-/// Vertices are distinguished by index, but those of edges that are not balanced count as one where they are
-/// no farther apart than 2^-21 of the radius, as they do for maps.
+/// The properties of a mesh. Vertices are distinguished by index, but those of unbalanced edges count as one
+/// if they are at most 2^-21 of the radius apart, as they do for maps.
 typedef struct echinus_mesh_report {
     size_t size;
     uint64_t face_count;
     uint64_t vertex_count;
     uint64_t component_count; ///< sets of faces joined by common vertices
-    int32_t closed;           ///< every edge is balanced: equally many faces run along it in each direction
-    int32_t manifold;         ///< at most two faces at each edge, and one fan of faces at each vertex
+    int32_t closed;   ///< every edge is balanced: the same number of faces traverse it in either direction
+    int32_t manifold; ///< at most two faces at each edge, and one fan of faces at each vertex
     echinus_fault border_edges;
     echinus_fault nonmanifold_edges;
     echinus_fault misoriented_edges;
     echinus_fault duplicate_faces;
     echinus_fault degenerate_faces;
-    double signed_volume; ///< positive where faces turn outwards; of limited meaning when not closed
+    double signed_volume; ///< positive if faces point outwards; of limited meaning if the mesh is open
     double centre[3];     ///< of the smallest sphere that encloses all vertices used by faces
     double radius;
-    /// The step of float at the largest coordinate, where all coordinates are floats and half of this step
-    /// exceeds a step of a map's lattice; otherwise 0. Finer detail is lost.
+    /// The spacing of floats at the largest coordinate, if all coordinates are floats and half of this
+    /// spacing exceeds a step of a map's lattice; otherwise 0. Finer detail is lost.
     double rounding_step;
-    int32_t orientable; ///< faces can be turned so that all edges with two faces are balanced
+    int32_t orientable; ///< faces can be flipped so that all edges with two faces are balanced
     int32_t reserved;   ///< 0
 } echinus_mesh_report;
 
-/// Points in double as floats relative to an origin. Without a handle; any thread.
+/// Converts points in double to floats relative to an origin. Any thread may call this.
 /// @param points  [3 count]
 /// @param origin  [3] of a mesh, a map or tetrahedra
 /// @param local   [3 count] out
 ECHINUS_API echinus_status echinus_to_local(const double* points, size_t count, const double* origin,
                                             float* local);
 
-/// @param report  out; its size is set
+/// Examines a mesh.
+/// @param report  out; the caller sets its size
 ECHINUS_API echinus_status echinus_mesh_inspect(const echinus_mesh* mesh, echinus_mesh_report* report);
 
 // Options: repair. By bindings/generate_options from bindings/options.toml: edit that.
-/// The steps that a repair may take. All off by default. None opens a closed mesh.
+/// The repairs that a call may make. All are off by default. None opens a closed mesh.
 typedef struct echinus_repair_options {
     size_t size;
-    /// Of faces with the same three vertices drop opposite ones in pairs, and of the rest keep the first
+    /// Among faces with the same three vertices, drop opposite ones in pairs, and keep the first of the rest
     int32_t drop_duplicate_faces;
     /// Where two pairs of faces fill the same quadrilateral, each along its own diagonal, drop one pair
     int32_t drop_doubled_patches;
-    /// Turn round closed parts whose faces look inwards; cavities stay cavities
+    /// Flip closed parts whose faces point inwards; cavities stay cavities
     int32_t flip_inside_out;
     /// 0
     int32_t reserved;
-    /// Fill holes whose border has at most so many edges, with the triangles of least area. The rim of a
-    /// sheet, whose filling would have more than a third of the sheet's area, is no hole (0 to 256)
+    /// Fill holes whose border has at most this number of edges, with the triangulation of least area. The
+    /// rim of a sheet, whose filling would have more than a third of the sheet's area, is not a hole (0 to
+    /// 256)
     uint32_t max_hole_edges;
-    /// Drop faces with the solid on both sides, a patch of neighbours at a time, where no edge that stays is
-    /// less balanced for it: an engine in the body of a car
+    /// Drop faces that have the solid on both sides, such as those of an engine in the body of a car: a patch
+    /// of neighbours at a time, if no remaining edge becomes less balanced
     int32_t drop_inner_faces;
-    /// Make solids of the parts that are not closed, so thick, half of it on either side; 0: none (not
-    /// negative)
+    /// Thicken open parts into solids of this thickness, half of it on either side; 0: none (not negative)
     double sheet_thickness;
-    /// Join vertices at the edges of holes that are no farther apart than weld_distance, and fill holes that
-    /// are no wider
+    /// Join vertices at the borders of holes that are at most weld_distance apart, and fill holes that are no
+    /// wider
     int32_t close_seams;
-    /// Drop faces without area at the edges of holes, unless they fill a seam
+    /// Drop faces without area at the borders of holes, unless they fill a seam
     int32_t drop_loose_slivers;
-    /// Turn faces so that neighbours agree, in parts that are closed by themselves
+    /// Flip faces so that neighbours agree, in parts that are closed by themselves
     int32_t orient_faces;
     /// 0
     int32_t reserved_2;
-    /// How wide seams may be; at most the radius of the bounding sphere, and at least 2^-21 of it counts,
-    /// within which maps take two vertices for one (not negative)
+    /// The width of seams, at most the radius of the bounding sphere. The effective value is at least 2^-21
+    /// of the radius, within which maps join vertices anyway (not negative)
     double weld_distance;
 } echinus_repair_options;
 
@@ -251,28 +255,28 @@ typedef struct echinus_repair_report {
     uint64_t doubled_patch_faces_dropped;
     uint64_t components_flipped;
     uint64_t holes_closed; ///< before components are flipped
-    uint64_t holes_left;   ///< with more edges, or rims of sheets; 0 unless holes were to be closed
+    uint64_t holes_left;   ///< holes with more edges, or rims of sheets; 0 unless holes were to be closed
     uint64_t inner_faces_dropped;
     uint64_t sheets_thickened;
     uint64_t faces_added;     ///< to fill seams, to close holes and to thicken sheets
-    uint64_t vertices_welded; ///< in whose place faces refer to others now
-    uint64_t slivers_dropped; ///< loose ones, and faces that lost their area by welding
-    uint64_t faces_turned;    ///< so that neighbours agree
-    uint64_t seams_filled;    ///< holes without width
+    uint64_t vertices_welded; ///< vertices that were replaced by others in all faces
+    uint64_t slivers_dropped; ///< loose slivers, and faces that lost their area by welding
+    uint64_t faces_turned;    ///< faces flipped so that neighbours agree
+    uint64_t seams_filled;    ///< filled holes of zero width
 } echinus_repair_report;
 
-/// A repaired copy of a mesh. Faces keep their order, new ones come after them. Vertices stay as they are but
-/// for those of sheets that are thickened.
-/// @param report         out, its size is set; or NULL
-/// @param dropped_faces  out, uint32_t: numbers of the dropped faces in the given mesh, ascending; those that
-///                       closed a hole have the numbers after the mesh's; or NULL
-/// @return ECHINUS_INVALID_MESH; ECHINUS_INVALID_OPTIONS for more edges than 256, or a thickness or a weld
-/// distance that does not suit the mesh
+/// Makes a repaired copy of a mesh. Faces keep their order, and new faces are appended. Vertices do not
+/// change, except those of thickened sheets.
+/// @param report         out, the caller sets its size; or NULL
+/// @param dropped_faces  out, uint32_t: indices of the dropped faces in the given mesh, ascending; faces that
+/// closed a hole have indices after those of the mesh; or NULL
+/// @return ECHINUS_INVALID_MESH; ECHINUS_INVALID_OPTIONS for more edges than 256, or a thickness or weld
+/// distance that is not valid for the mesh
 ECHINUS_API echinus_status echinus_mesh_repair(const echinus_mesh* mesh,
                                                const echinus_repair_options* options, echinus_mesh** repaired,
                                                echinus_repair_report* report, echinus_array** dropped_faces);
 
-/// A copy in which vertices at equal positions are joined and those that no face uses are dropped.
+/// Makes a copy in which vertices at equal positions are joined and unused vertices are dropped.
 ECHINUS_API echinus_status echinus_mesh_weld(const echinus_mesh* mesh, echinus_mesh** welded);
 
 /// Generalised winding number of a point, by brute force over all faces: for tests.
@@ -284,18 +288,18 @@ ECHINUS_API echinus_status echinus_mesh_winding_number(const echinus_mesh* mesh,
 ECHINUS_API echinus_status echinus_mesh_unsigned_distance(const echinus_mesh* mesh, const double* point,
                                                           double* distance);
 
-/// Which faces of two meshes intersect; touching counts. Decided exactly.
+/// Finds the intersecting faces of two meshes by exact tests; touching counts.
 /// @param pairs  out, uint32_t[2]: a face of a and a face of b, ascending
 ECHINUS_API echinus_status echinus_mesh_intersecting_pairs(const echinus_mesh* a, const echinus_mesh* b,
                                                            echinus_array** pairs);
-/// Which faces of one mesh intersect beyond the vertices and edges that they share. Decided exactly.
+/// Finds the faces of one mesh that intersect other than in shared vertices and edges, by exact tests.
 /// @param pairs  out, uint32_t[2]: two faces, ascending
 ECHINUS_API echinus_status echinus_mesh_self_intersecting_pairs(const echinus_mesh* mesh,
                                                                 echinus_array** pairs);
 
-// ---- Maps: build, look at ----
+// ---- Maps: building and inspecting ----
 
-/// An exact map, a distance map, or a structure of the caller's own behind two functions.
+/// An exact map, a distance map, or a custom map, which calls two functions of the caller.
 typedef struct echinus_map echinus_map;
 
 typedef enum echinus_map_kind {
@@ -304,16 +308,16 @@ typedef enum echinus_map_kind {
     ECHINUS_MAP_CUSTOM = 3
 } echinus_map_kind;
 
-/// Which places are inside, by the winding number of the surface around them.
+/// The rule by which the winding number of the surface around a point decides whether it is inside.
 typedef enum echinus_inside_rule {
-    ECHINUS_INSIDE_NONZERO = 0, ///< every winding number but 0
+    ECHINUS_INSIDE_NONZERO = 0, ///< every winding number except 0
     ECHINUS_INSIDE_PARITY = 1   ///< an odd winding number: a part within a part is a hole
 } echinus_inside_rule;
 
-/// Where the rays of a map start.
+/// The point at which the rays of a map start.
 typedef enum echinus_centre_choice {
     ECHINUS_CENTRE_BOUNDING_SPHERE = 0, ///< the centre of the smallest enclosing sphere
-    ECHINUS_CENTRE_SEARCH = 1           ///< the place that promises the better map; some twenty coarse builds
+    ECHINUS_CENTRE_SEARCH = 1           ///< the point with the best expected map; about twenty coarse builds
 } echinus_centre_choice;
 
 // Options: exact_map. By bindings/generate_options from bindings/options.toml: edit that.
@@ -323,14 +327,15 @@ typedef struct echinus_exact_map_options {
     uint32_t divisions;
     /// Threads that build the map; 0: all cores. The map does not depend on it
     uint32_t thread_count;
-    /// The finest map that takes no more; 0: no limit. Not together with a number of cells (0 to 4e9 bytes)
+    /// The largest size of the map, which gets as many cells as fit; 0: no limit. Not together with a number
+    /// of cells (0 to 4e9 bytes)
     uint64_t byte_budget;
-    /// The inside where parts of the model overlap: their union, or where an odd number of them is
+    /// The inside where parts of the model overlap: their union, or the points in an odd number of parts
     echinus_inside_rule rule;
-    /// Where rays start: the centre of the bounding sphere, or a place searched for short lists
+    /// The origin of the rays: the centre of the bounding sphere, or a point that is searched for short lists
     echinus_centre_choice centre;
-    /// False: open surfaces are built sooner, by up to 0.2 s, and the same answers take up to eight times as
-    /// long: for maps that last for a frame
+    /// False: maps of open surfaces are built up to 0.2 s faster, and the same answers take up to eight times
+    /// as long, which suits maps that are used for one frame
     int32_t find_certain_gaps;
     /// 0
     uint32_t reserved;
@@ -379,24 +384,24 @@ typedef enum echinus_pole_axis {
 // Options: distance_map. By bindings/generate_options from bindings/options.toml: edit that.
 typedef struct echinus_distance_map_options {
     size_t size;
-    /// How directions are divided
+    /// The grid of directions
     echinus_direction_grid grid;
     /// Spherical and ellipsoidal grid: samples of longitude (4 to 8192)
     uint32_t longitude_count;
     /// Spherical and ellipsoidal grid: samples of colatitude (4 to 8192)
     uint32_t colatitude_count;
-    /// Octahedral grid and cube: into how many parts each edge is cut (4 to 4096)
+    /// Octahedral grid and cube: the number of parts of each edge (4 to 4096)
     uint32_t divisions;
-    /// How vertices between the samples are corrected for
+    /// The correction for vertices between the samples
     echinus_vertex_correction correction;
-    /// How a distance is stored; unorm16 takes half the bytes and is off by at most 7.6e-6 R, on octahedral
-    /// and ellipsoidal grids 1.4e-5 R
+    /// The format of a stored distance; unorm16 takes half the bytes, with an error of at most 7.6e-6 R, on
+    /// octahedral and ellipsoidal grids 1.4e-5 R
     echinus_entry_format entry_format;
     /// Spherical and ellipsoidal grid: axis of the mesh through the poles of the directions, where samples
     /// crowd
     echinus_pole_axis pole_axis;
-    /// Where rays start: the centre of the bounding sphere, or a place searched for few wrong answers beside
-    /// the surface
+    /// The origin of the rays: the centre of the bounding sphere, or a point that is searched for few wrong
+    /// answers near the surface
     echinus_centre_choice centre;
     /// Threads that build the map; 0: all cores. The map does not depend on it
     uint32_t thread_count;
@@ -426,17 +431,17 @@ typedef struct echinus_map_info {
     double origin[3];     ///< of the local frame, in the frame of the mesh's file
 } echinus_map_info;
 
-/// @param info  out; its size is set
+/// @param info  out; the caller sets its size
 ECHINUS_API echinus_status echinus_map_describe(const echinus_map* map, echinus_map_info* info);
 
 typedef struct echinus_exact_map_statistics {
     size_t size;
     uint32_t face_count;
-    uint32_t dropped_faces; ///< without area on the lattice: they count for distances only
-    uint32_t longest_list;  ///< most faces of one band
+    uint32_t dropped_faces; ///< faces without area on the lattice, which count for distances only
+    uint32_t longest_list;  ///< largest number of faces in a band
     float mean_list;
-    float expected_tests;       ///< faces that a query near the surface looks at
-    float certain_share;        ///< of the bounding sphere's volume: answers known beforehand; 1 if closed
+    float expected_tests;       ///< expected number of faces that a query near the surface tests
+    float certain_share;        ///< share of the bounding sphere's volume with stored answers; 1 if closed
     float uncertain_directions; ///< share of directions along which an answer is computed somewhere
     uint32_t reserved;          ///< 0
 } echinus_exact_map_statistics;
@@ -449,10 +454,10 @@ typedef struct echinus_distance_map_statistics {
     size_t size;
     uint32_t face_count;
     uint32_t dropped_faces;
-    uint32_t max_entries;       ///< of one direction
-    uint32_t corrected_entries; ///< moved by the vertex correction
-    uint32_t clamped_entries;   ///< corrections that were cut short
-    float wrong_parity_share;   ///< of directions that see a hole; 0 when the mesh is closed
+    uint32_t max_entries;       ///< largest number of entries of a direction
+    uint32_t corrected_entries; ///< entries moved by the vertex correction
+    uint32_t clamped_entries;   ///< corrections that were clamped
+    float wrong_parity_share;   ///< share of directions that see a hole; 0 for a closed mesh
 } echinus_distance_map_statistics;
 
 /// The findings of the build of a distance map.
@@ -462,8 +467,7 @@ ECHINUS_API echinus_status echinus_map_distance_statistics(const echinus_map* ma
 /// The surface of a map as a mesh, in the local frame: the mesh on the lattice of an exact map, or the layers
 /// that a distance map interpolates.
 /// @param classes  out, uint32_t [face_count]: the longest list that contains the face (exact map), or its
-/// layer
-///                 (distance map); or NULL
+/// layer (distance map); or NULL
 /// @return ECHINUS_INVALID_ARGUMENT for a custom map
 ECHINUS_API echinus_status echinus_map_surface(const echinus_map* map, echinus_mesh** mesh,
                                                echinus_array** classes);
@@ -476,8 +480,8 @@ typedef struct echinus_map_builder echinus_map_builder;
 ECHINUS_API echinus_status echinus_map_builder_create(const uint32_t* faces, size_t face_count,
                                                       const echinus_exact_map_options* options,
                                                       echinus_map_builder** builder);
-/// The map that echinus_map_build_exact() would build of these vertices. Memory of the map before is used
-/// again if that map was destroyed.
+/// Builds the map that echinus_map_build_exact() would build from these vertices. The memory of the previous
+/// map is reused if that map was destroyed.
 ECHINUS_API echinus_status echinus_map_builder_rebuild(echinus_map_builder* builder, const float* vertices,
                                                        size_t vertex_count, size_t vertex_stride,
                                                        echinus_map** map);
@@ -485,7 +489,7 @@ ECHINUS_API void echinus_map_builder_destroy(echinus_map_builder* builder);
 
 // ---- Map files ----
 
-/// Writes a map file. It appears whole or not at all.
+/// Writes a map file atomically.
 /// @return ECHINUS_UNWRITABLE; ECHINUS_INVALID_ARGUMENT for a custom map
 ECHINUS_API echinus_status echinus_map_save(const echinus_map* map, const char* path);
 
@@ -493,17 +497,17 @@ ECHINUS_API echinus_status echinus_map_save(const echinus_map* map, const char* 
 /// @param bytes  out, unsigned char
 ECHINUS_API echinus_status echinus_map_serialise(const echinus_map* map, echinus_array** bytes);
 
-/// Maps a file into memory, verifies it and reads it in place. The file may be replaced or removed meanwhile,
-/// but must not be overwritten in place.
+/// Maps a file into memory, verifies it and reads it in place. While it is in use, the file may be replaced
+/// or removed, but must not be overwritten in place.
 /// @return ECHINUS_UNREADABLE, ECHINUS_WRONG_FORMAT, ECHINUS_UNSUPPORTED_VERSION or ECHINUS_DAMAGED
 ECHINUS_API echinus_status echinus_map_load(const char* path, echinus_map** map);
 
-/// A map that reads bytes of the caller in place, after it verified them.
+/// Makes a map that uses bytes of the caller in place, after verifying them.
 /// @param bytes    at an address that is a multiple of 8; unchanged until release is called
 /// @param release  called with `context` once the map and all simulations that use it are gone, from the
 ///                 thread that destroys the last of them; or NULL. Not called if this call fails
-/// @param context  the caller's own, or NULL
-/// @param name     stands for the path in errors
+/// @param context  passed to release; or NULL
+/// @param name     replaces the path in error messages
 ECHINUS_API echinus_status echinus_map_view(const void* bytes, size_t byte_count,
                                             void (*release)(void* context), void* context, const char* name,
                                             echinus_map** map);
@@ -512,34 +516,34 @@ ECHINUS_API echinus_status echinus_map_view(const void* bytes, size_t byte_count
 
 struct echinus_contact;
 
-/// A structure of the caller's own that colliders ask in place of a map. Points are x, y, z, one after the
-/// other, in its own frame. Any number of threads may call at once. The functions must not leave by an
+/// A data structure of the caller that colliders query in place of a map. Points are x, y, z, contiguous, in
+/// the frame of the structure. Any number of threads may call at once. The functions must not exit by an
 /// exception or longjmp.
 typedef struct echinus_custom_map {
     size_t size;
-    void* context; ///< is passed to the functions
+    void* context; ///< passed to the functions
     /// @param inside  [count] out: 1 inside, 0 outside
     void (*contains)(void* context, const float* points, size_t count, uint8_t* inside);
-    /// A contact for each particle that is inside, or outside and no farther from the surface than the
-    /// margin.
+    /// Returns a contact for each particle that is inside, or outside within the margin.
     /// @param contacts  [count] out: every element must be written
     void (*contacts)(void* context, const float* points, size_t count, float margin,
                      struct echinus_contact* contacts);
-    /// Called once the map and all simulations that use it are gone; or NULL. Not called where the map was
-    /// not made.
+    /// Called when the map and all simulations that use it are destroyed; or NULL. It is not called if the
+    /// map could not be made.
     void (*release)(void* context);
 } echinus_custom_map;
 
-/// @param custom  its size is set; copied
+/// Makes a custom map.
+/// @param custom  the caller sets its size; copied
 ECHINUS_API echinus_status echinus_map_from_custom(const echinus_custom_map* custom, echinus_map** map);
 
 // ---- Queries of maps, in the local frame ----
 //
-// NaN or infinity in a point: outside, no contact, nothing met. A call takes up to 120 KB of the stack.
-// Batches are several times as fast as calls for single points, and give the same bits. Custom maps are asked
-// through colliders: here they are ECHINUS_INVALID_ARGUMENT.
+// A point with NaN or infinity is outside, has no contact and meets nothing. A call takes up to 120 KB of the
+// stack. Batches are several times as fast as calls for single points, and give bit-identical answers. Custom
+// maps are queried through colliders: here they are ECHINUS_INVALID_ARGUMENT.
 
-/// The part of a triangle that the nearest point lies on.
+/// The part of a triangle on which the nearest point lies.
 typedef enum echinus_feature {
     ECHINUS_FEATURE_UNKNOWN = 0,
     ECHINUS_FEATURE_FACE = 1,
@@ -549,62 +553,62 @@ typedef enum echinus_feature {
 
 /// The answer for one particle. Without a contact: point is the particle, depth and normal are 0, face is -1.
 typedef struct echinus_contact {
-    float point[3];  ///< where the push-out leads
-    float normal[3]; ///< unit, out of the solid
+    float point[3];  ///< the target of the push-out
+    float normal[3]; ///< outward unit normal
     float depth;     ///< distance to point: positive inside, negative outside
-    int32_t face;    ///< of the mesh; -1 where it is not known
+    int32_t face;    ///< index in the mesh; -1 if it is not known
     uint8_t inside;
-    uint8_t certain; ///< 0 where the mesh is open and its winding number within 0.1 of where the side turns
+    uint8_t certain; ///< 0 where the mesh is open and its winding number is within 0.1 of the threshold
     uint8_t feature; ///< an echinus_feature
 } echinus_contact;
 
-/// Which points are inside.
+/// Decides which points are inside.
 /// @param inside  [count] out: 1 inside, 0 outside
 ECHINUS_API echinus_status echinus_map_contains(const echinus_map* map, const float* points, size_t count,
                                                 size_t stride, uint32_t thread_count, uint8_t* inside);
 
-/// Which points are inside, and whether that is certain. One point after the other, on one thread.
+/// Decides which points are inside, and whether that is certain, one point after the other on one thread.
 /// @param inside   [count] out
-/// @param certain  [count] out: 0 where the mesh is open and its winding number within 0.1 of where the side
-/// turns
+/// @param certain  [count] out: 0 where the mesh is open and its winding number is within 0.1 of the
+/// threshold
 ECHINUS_API echinus_status echinus_map_classify(const echinus_map* map, const float* points, size_t count,
                                                 size_t stride, uint8_t* inside, uint8_t* certain);
 
-/// Inside or not, how deep, and which way out.
-/// @param margin    points outside get a contact too when the surface is at most this far; not negative
+/// Finds contacts: whether points are inside, how deep, and where the push-out leads.
+/// @param margin    points outside also get a contact if the surface is at most this far away; not negative
 /// @param contacts  [count] out
 ECHINUS_API echinus_status echinus_map_contacts(const echinus_map* map, const float* points, size_t count,
                                                 size_t stride, float margin, uint32_t thread_count,
                                                 echinus_contact* contacts);
 
-/// How far each point is from the surface, however far that is: negative inside, positive outside, the
-/// opposite of depth. Where it is 0, the sign bit tells the side. Only exact maps can tell. NaN in a point
-/// gives NaN, infinity gives infinity, and a gradient of 0.
+/// Signed distances of points from the surface, however far away: negative inside, positive outside, the
+/// opposite of depth. Where the distance is 0, the sign bit tells whether the point is inside. Only exact
+/// maps support this. A point with NaN gives NaN, a point with infinity gives infinity, both with a gradient
+/// of 0.
 /// @param distances  [count] out
 /// @param gradients  [3 count] out: unit vectors along which the distance grows fastest; or NULL
 ECHINUS_API echinus_status echinus_map_signed_distance(const echinus_map* map, const float* points,
                                                        size_t count, size_t stride, uint32_t thread_count,
                                                        float* distances, float* gradients);
 
-/// How often the surface goes around each point, counted with sign: a whole number where it is closed, else
-/// the generalised winding number. Only exact maps can tell. NaN in a point gives NaN, infinity 0.
-/// @param tolerance        the numbers may be off by this much, but not to the other side of a half; not
-///                         negative, and 0 counts as 1e-8
+/// Winding numbers of the surface around points: integers for a closed surface, otherwise generalised winding
+/// numbers. Only exact maps support this. A point with NaN gives NaN, a point with infinity gives 0.
+/// @param tolerance        the largest error, which does not cross a half; not negative, and 0 counts as 1e-8
 /// @param winding_numbers  [count] out
 ECHINUS_API echinus_status echinus_map_winding_number(const echinus_map* map, const float* points,
                                                       size_t count, size_t stride, float tolerance,
                                                       uint32_t thread_count, float* winding_numbers);
 
-/// Where a particle that moves along a segment first meets the surface.
+/// The point at which a particle that moves along a segment first meets the surface.
 typedef struct echinus_sweep_hit {
-    float fraction;   ///< of the segment; 1 without a crossing
-    float point[3];   ///< where it meets the surface; the end of the segment without a crossing
-    float normal[3];  ///< of the face, out of the solid; 0 without a crossing
+    float fraction;   ///< position on the segment; 1 without a crossing
+    float point[3];   ///< the crossing; the end of the segment without a crossing
+    float normal[3];  ///< outward normal of the face; 0 without a crossing
     int32_t face;     ///< -1 without a crossing
     uint8_t entering; ///< the crossing leads from outside to inside
 } echinus_sweep_hit;
 
-/// The first crossing of each segment. Only exact maps can tell.
+/// Finds the first crossing of each segment. Only exact maps support this.
 /// @param hits  [count] out
 ECHINUS_API echinus_status echinus_map_sweep(const echinus_map* map, const float* from, size_t from_stride,
                                              const float* to, size_t to_stride, size_t count,
@@ -612,44 +616,44 @@ ECHINUS_API echinus_status echinus_map_sweep(const echinus_map* map, const float
 
 // ---- Triangles against the surface of an exact map, in the local frame ----
 //
-// Triangles are nine floats, corner after corner; their stride is a multiple of 4 and at least 36; 0 stands
-// for 36. A triangle with two equal corners is an edge, one with three a point. One with a corner that is not
-// finite is nowhere.
+// Triangles are nine floats, corner after corner; their stride is a multiple of 4, at least 36; 0 means 36. A
+// triangle with two equal corners is an edge, and one with three equal corners a point. A triangle with a
+// corner that is not finite is far from all faces.
 
-/// Which triangles have a point in common with the surface.
+/// Decides which triangles have a point in common with the surface.
 /// @param intersecting  [count] out: 0 or 1
 ECHINUS_API echinus_status echinus_map_intersects(const echinus_map* map, const float* triangles,
                                                   size_t count, size_t stride, uint8_t* intersecting);
 
 typedef struct echinus_clearance {
-    float distance; ///< never more than the true one
-    int32_t face;   ///< that is so far; -1 where none is within the farthest distance
+    float distance; ///< a lower bound of the distance
+    int32_t face;   ///< the face at this distance; -1 if none is within the search distance
 } echinus_clearance;
 
-/// How far each triangle is from the surface.
-/// @param farthest    beyond it nothing is looked for; not negative, may be infinite
+/// Finds the distance of each triangle from the surface.
+/// @param farthest    the search distance; not negative, may be infinite
 /// @param clearances  [count] out
 ECHINUS_API echinus_status echinus_map_clearance(const echinus_map* map, const float* triangles, size_t count,
                                                  size_t stride, float farthest,
                                                  echinus_clearance* clearances);
 
 typedef struct echinus_triangle_sweep_hit {
-    float fraction; ///< of the way; until there the triangle does not meet the surface
-    int32_t face;   ///< that it comes to; -1 where it meets none
+    float fraction; ///< fraction of the path up to which the triangle does not meet the surface
+    int32_t face;   ///< the face that it reaches; -1 if it meets none
 } echinus_triangle_sweep_hit;
 
-/// Where triangles whose corners move along straight lines first come to the surface. Ways that begin or end
-/// farther from the map's centre than 10^11 of its radii are not followed: they meet nothing.
+/// Sweeps triangles whose corners move along straight lines until they reach the surface. Paths that begin or
+/// end farther from the map's centre than 10^11 of its radii are not followed: they meet nothing.
 /// @param hits  [count] out
 ECHINUS_API echinus_status echinus_map_sweep_triangles(const echinus_map* map, const float* from,
                                                        size_t from_stride, const float* to, size_t to_stride,
                                                        size_t count, echinus_triangle_sweep_hit* hits);
 
-/// The faces that come within reach of each triangle of a mesh.
+/// Finds the faces within reach of each triangle of a mesh.
 /// @param triangles  [3 triangle_count] vertex indices
-/// @param reach      not negative; 0: faces that touch
-/// @param offsets    out, uint32_t [triangle_count + 1]: where the list of each triangle begins
-/// @param faces      out, uint32_t: list after list, each ascending
+/// @param reach      not negative; 0: only touching faces
+/// @param offsets    out, uint32_t [triangle_count + 1]: the start of each triangle's list
+/// @param faces      out, uint32_t: the lists one after the other, each ascending
 ECHINUS_API echinus_status echinus_map_faces_within(const echinus_map* map, const float* vertices,
                                                     size_t vertex_count, size_t vertex_stride,
                                                     const uint32_t* triangles, size_t triangle_count,
@@ -658,43 +662,43 @@ ECHINUS_API echinus_status echinus_map_faces_within(const echinus_map* map, cons
 
 // ---- Colliders ----
 
-/// Rotate, then translate.
+/// A pose: a rotation followed by a translation.
 typedef struct echinus_pose {
-    double rotation[4]; ///< unit quaternion w, x, y, z, to 1e-4
+    double rotation[4]; ///< unit quaternion w, x, y, z, to within 1e-4
     double translation[3];
 } echinus_pose;
 
-/// The rotation by an angle about an axis, counter-clockwise seen against the axis.
-/// @param axis      [3] of any length but zero; finite
+/// The rotation by an angle about an axis, counter-clockwise seen from the tip of the axis.
+/// @param axis      [3] finite, of any length except 0
 /// @param rotation  [4] out: w, x, y, z
 ECHINUS_API echinus_status echinus_rotation_about(const double* axis, double angle_rad, double* rotation);
 
-/// A map in the world: a plain value of the caller's. Its map must outlive its use, except in a simulation,
-/// which keeps what it needs. In a row of colliders all have the size of the first.
+/// A map in the world: a plain value that the caller owns. Its map must outlive its use, except in a
+/// simulation, which keeps the data that it needs. In an array all colliders have the size of the first.
 typedef struct echinus_collider {
     size_t size;
     const echinus_map* map;
     echinus_pose pose;
-    double scale[3];            ///< along the axes of the map, before the pose; not 0, finite
+    double scale[3];            ///< along the axes of the map, before the pose; finite, not 0
     double linear_velocity[3];  ///< of the pose's translation, units per second
-    double angular_velocity[3]; ///< about the pose's translation, world axes, radians per second
+    double angular_velocity[3]; ///< about the pose's translation, in world axes, radians per second
 } echinus_collider;
 
-/// A collider at rest in the map's own frame.
+/// Fills in a collider at rest in the map's own frame.
 ECHINUS_API void echinus_collider_init(echinus_collider* collider, size_t size, const echinus_map* map);
 
-/// As echinus_map_contains(), in the world, on one thread, for maps of every kind.
+/// Like echinus_map_contains(), in the world, on one thread, for maps of every kind.
 ECHINUS_API echinus_status echinus_collider_contains(const echinus_collider* collider, const float* points,
                                                      size_t count, size_t stride, uint8_t* inside);
 
-/// As echinus_map_contacts(), in the world, on one thread, for maps of every kind.
+/// Like echinus_map_contacts(), in the world, on one thread, for maps of every kind.
 ECHINUS_API echinus_status echinus_collider_contacts(const echinus_collider* collider, const float* points,
                                                      size_t count, size_t stride, float margin,
                                                      echinus_contact* contacts);
 
-/// Where particles first meet a collider that moves while they move, from the previous pose to its present
-/// one. `point` is where the point of the surface that was met lies now. Distance maps and custom maps meet
-/// nothing.
+/// Finds where moving particles first meet a collider that moves from its previous pose to its present one.
+/// `point` is the present position of the surface point that was met. With distance maps and custom maps
+/// nothing is met.
 ECHINUS_API echinus_status echinus_collider_sweep(const echinus_collider* collider,
                                                   const echinus_pose* previous, const float* from,
                                                   size_t from_stride, const float* to, size_t to_stride,
@@ -706,25 +710,25 @@ ECHINUS_API echinus_status echinus_collider_sweep(const echinus_collider* collid
 ECHINUS_API echinus_status echinus_collider_velocity_at(const echinus_collider* collider, const double* point,
                                                         double* velocity);
 
-/// The pose of a collider a time later.
+/// The pose of a collider after the given time at its velocities.
 /// @param seconds  finite
 ECHINUS_API echinus_status echinus_collider_pose_after(const echinus_collider* collider, double seconds,
                                                        echinus_pose* pose);
 
-/// Where a collider is at a time.
+/// A keyframe: the pose of a collider at a time.
 typedef struct echinus_pose_key {
     double time; ///< seconds
     echinus_pose pose;
 } echinus_pose_key;
 
-/// The pose at a time: from key to key straight, and about one axis the shorter way round, both evenly;
-/// before the first key and after the last it is theirs.
+/// The pose at a time: between two keys the translation is interpolated linearly, and the rotation at
+/// constant speed along the shorter arc; before the first key and after the last the pose is that of the key.
 /// @param keys  [key_count], at least one; their times ascend, and poses are finite
 /// @param pose  out
 ECHINUS_API echinus_status echinus_pose_at(const echinus_pose_key* keys, size_t key_count, double seconds,
                                            echinus_pose* pose);
 
-/// The vertices of a model over time, in samples at equal distances. Never changes.
+/// The vertices of a model over time, in equally spaced samples. It is immutable.
 typedef struct echinus_vertex_cache echinus_vertex_cache;
 
 /// Copies the samples.
@@ -736,10 +740,10 @@ ECHINUS_API echinus_status echinus_vertex_cache_create(const float* samples, siz
                                                        size_t vertex_count, double start_time,
                                                        double sample_seconds, echinus_vertex_cache** cache);
 /// Reads a PC2 point cache, or a folder of OBJ files, one for each frame in the order of their names.
-/// @param mesh               the model, as echinus_mesh_read() gives it
+/// @param mesh               the model, as returned by echinus_mesh_read()
 /// @param frames_per_second  positive
-/// @return as echinus_mesh_read(); ECHINUS_INVALID_MESH also when the number of vertices, or a face in a
-/// folder, is not the model's
+/// @return as echinus_mesh_read(); ECHINUS_INVALID_MESH also if the number of vertices, or a face in a
+/// folder, differs from the model's
 ECHINUS_API echinus_status echinus_vertex_cache_read(const char* path, const echinus_mesh* mesh,
                                                      double frames_per_second, echinus_vertex_cache** cache);
 ECHINUS_API void echinus_vertex_cache_destroy(echinus_vertex_cache* cache);
@@ -753,46 +757,48 @@ typedef struct echinus_vertex_cache_info {
     const float* samples; ///< [3 vertex_count sample_count]; valid as long as the cache
 } echinus_vertex_cache_info;
 
-/// @param info  out; its size is set
+/// @param info  out; the caller sets its size
 ECHINUS_API echinus_status echinus_vertex_cache_describe(const echinus_vertex_cache* cache,
                                                          echinus_vertex_cache_info* info);
-/// The vertices at a time: straight from sample to sample; before the first and after the last they rest.
+/// The vertices at a time, interpolated linearly between samples; before the first and after the last sample
+/// they are those of that sample.
 /// @param vertices  [3 vertex_count] out
 ECHINUS_API echinus_status echinus_vertex_cache_at(const echinus_vertex_cache* cache, double seconds,
                                                    float* vertices);
 
-// ---- Tetrahedra: solids cut into them (docs/tetrahedra.md) ----
+// ---- Tetrahedra: solids divided into tetrahedra (docs/tetrahedra.md) ----
 
-/// A body of tetrahedra that share vertices. Each is positive, and two that share a face lie on either side
-/// of it: what is not so is refused. Never changes.
+/// A body of tetrahedra that share vertices. Each tetrahedron is positive, and two with a common face lie on
+/// opposite sides of it; other bodies are refused. It is immutable.
 typedef struct echinus_tetrahedra echinus_tetrahedra;
 
 /// Copies vertices and tetrahedra.
 /// @param tetrahedra  [4 tetrahedron_count] vertices a, b, c, d: a, b, c turn counter-clockwise seen from d
-/// @return ECHINUS_INVALID_MESH, naming the first tetrahedron or vertex at fault; signs are exact
+/// @return ECHINUS_INVALID_MESH, naming the first invalid tetrahedron or vertex; signs are exact
 ECHINUS_API echinus_status echinus_tetrahedra_create(const float* vertices, size_t vertex_count,
                                                      size_t vertex_stride, const uint32_t* tetrahedra,
                                                      size_t tetrahedron_count, echinus_tetrahedra** body);
 
-/// The changes made for a file's body to be valid.
+/// The changes that made a file's body valid.
 typedef struct echinus_tetrahedra_file_report {
     size_t size;
-    uint64_t turned_tetrahedra; ///< that were negative: the order of corners is a file's convention
-    uint64_t dropped_vertices;  ///< that no tetrahedron uses
+    uint64_t turned_tetrahedra; ///< negative tetrahedra that were reversed: the order of corners is a
+                                ///< convention of the file
+    uint64_t dropped_vertices;  ///< vertices that no tetrahedron uses
 } echinus_tetrahedra_file_report;
 
 /// Reads .msh (Gmsh 2.2 and 4.1), .vtk (legacy, an unstructured grid) or TetGen's .node with .ele, either of
 /// which names the pair.
-/// @param report  out, its size is set; or NULL
+/// @param report  out, the caller sets its size; or NULL
 /// @return ECHINUS_UNREADABLE, ECHINUS_WRONG_FORMAT, ECHINUS_DAMAGED or ECHINUS_INVALID_MESH
 ECHINUS_API echinus_status echinus_tetrahedra_read(const char* path, echinus_tetrahedra** body,
                                                    echinus_tetrahedra_file_report* report);
-/// Writes .msh (Gmsh 2.2) or .vtk, by the extension of the name. The file appears whole or not at all.
+/// Writes .msh (Gmsh 2.2) or .vtk, as the file name's extension says. The file is written atomically.
 /// @return ECHINUS_UNWRITABLE or ECHINUS_WRONG_FORMAT
 ECHINUS_API echinus_status echinus_tetrahedra_write(const echinus_tetrahedra* body, const char* path);
 
-/// A box around the origin, of cuboids cut into five tetrahedra each. Vertex (i, j, k), counted along x, y
-/// and z, has the index (k * (segments[1] + 1) + j) * (segments[0] + 1) + i.
+/// Makes a box around the origin, of cuboids that are divided into five tetrahedra each. Vertex (i, j, k),
+/// counted along x, y and z, has the index (k * (segments[1] + 1) + j) * (segments[0] + 1) + i.
 /// @param size      [3] lengths of the edges
 /// @param segments  [3] cuboids along each axis, 1 to 512
 ECHINUS_API echinus_status echinus_tetrahedra_box(const double* size, const uint32_t* segments,
@@ -804,11 +810,11 @@ typedef struct echinus_tetrahedralize_options {
     /// The edge of the lattice's cubes, in the model's unit. Either this or count; 0: the other (not
     /// negative)
     double lattice_size;
-    /// About so many tetrahedra: the size is found by trying
+    /// The target number of tetrahedra: the size is found by trial
     uint64_t count;
-    /// More tetrahedra are refused
+    /// The largest number of tetrahedra; more are refused
     uint64_t most_tetrahedra;
-    /// Threads that work on it; 0: all cores. The result does not depend on it
+    /// Threads; 0: all cores. The result does not depend on it
     uint32_t thread_count;
     /// 0
     uint32_t reserved;
@@ -820,13 +826,12 @@ ECHINUS_API void echinus_tetrahedralize_options_init(echinus_tetrahedralize_opti
 typedef struct echinus_tetrahedralize_report {
     size_t size;
     double lattice_size;
-    uint64_t removed_tetrahedra; ///< left out where parts would have met in no more than an edge or a vertex
+    uint64_t removed_tetrahedra; ///< left out where parts would have met in only an edge or a vertex
 } echinus_tetrahedralize_report;
 
-/// Fills what an exact map says is inside with tetrahedra, by isosurface stuffing. The boundary is closed,
-/// manifold and does not intersect itself; the extreme dihedral angles that were found are 9.3 and 161.7
-/// degrees.
-/// @param report  out, its size is set; or NULL
+/// Fills the inside of an exact map with tetrahedra, by isosurface stuffing. The boundary is closed, manifold
+/// and does not intersect itself; the extreme dihedral angles are 9.3 and 161.7 degrees.
+/// @param report  out, the caller sets its size; or NULL
 /// @return ECHINUS_INVALID_OPTIONS; ECHINUS_INVALID_MESH when no tetrahedron of that size fits into the
 /// model; ECHINUS_INVALID_ARGUMENT for a map of another kind
 ECHINUS_API echinus_status echinus_tetrahedralize(const echinus_map* model,
@@ -848,8 +853,8 @@ ECHINUS_API const uint32_t* echinus_tetrahedra_indices(const echinus_tetrahedra*
 typedef struct echinus_tetrahedra_report {
     size_t size;
     uint64_t tetrahedron_count;
-    uint64_t vertex_count; ///< that tetrahedra use
-    double volume;         ///< of all
+    uint64_t vertex_count; ///< number of used vertices
+    double volume;         ///< of all tetrahedra
     double least_volume;   ///< of one tetrahedron
     double shortest_edge;
     double longest_edge;
@@ -857,14 +862,14 @@ typedef struct echinus_tetrahedra_report {
     double greatest_angle_deg;
 } echinus_tetrahedra_report;
 
-/// @param report  out; its size is set
+/// @param report  out; the caller sets its size
 ECHINUS_API echinus_status echinus_tetrahedra_inspect(const echinus_tetrahedra* body,
                                                       echinus_tetrahedra_report* report);
 
-/// The faces that belong to one tetrahedron only, outward, with all vertices of the body.
+/// The faces that belong to only one tetrahedron, outward, with all vertices of the body.
 ECHINUS_API echinus_status echinus_tetrahedra_boundary(const echinus_tetrahedra* body, echinus_mesh** mesh);
 
-/// How far the boundary of a body and the surface of a model are apart, at samples on both.
+/// The distances between the boundary of a body and the surface of a model, at samples on both.
 typedef struct echinus_boundary_distance {
     size_t size;
     double mean_to_model;
@@ -873,17 +878,18 @@ typedef struct echinus_boundary_distance {
     double greatest_to_boundary;
 } echinus_boundary_distance;
 
-/// @param distance  out; its size is set
+/// @param distance  out; the caller sets its size
 /// @return ECHINUS_INVALID_ARGUMENT for a map of another kind than an exact one
 ECHINUS_API echinus_status echinus_tetrahedra_measure_distance(const echinus_tetrahedra* body,
                                                                const echinus_map* model,
                                                                uint32_t thread_count,
                                                                echinus_boundary_distance* distance);
 
-/// Where points lie in a body, so that they go along with it: a finer mesh, for instance. Never changes.
+/// The positions of points in a body, for instance of a finer mesh, so that they can follow it. It is
+/// immutable.
 typedef struct echinus_embedding echinus_embedding;
 
-/// Finds the tetrahedron that each point lies in, or else the nearest one, and the point's weights there.
+/// Finds the tetrahedron that contains each point, or else the nearest one, and the point's weights there.
 /// @param points  [count] finite
 /// @return ECHINUS_INVALID_MESH when a point is not finite
 ECHINUS_API echinus_status echinus_embedding_create(const echinus_tetrahedra* body, const float* points,
@@ -892,9 +898,9 @@ ECHINUS_API echinus_status echinus_embedding_create(const echinus_tetrahedra* bo
 ECHINUS_API void echinus_embedding_destroy(echinus_embedding* embedding);
 /// The number of points.
 ECHINUS_API size_t echinus_embedding_count(const echinus_embedding* embedding);
-/// Where the points are once the body's vertices have moved.
-/// @param positions       [position_count] of the body's vertices, of which there are so many
-/// @param points          [3 count] out; does not overlap the positions
+/// Computes the positions of the points after the body's vertices have moved.
+/// @param positions       [position_count] the positions of all vertices of the body
+/// @param points          [3 count] out; must not overlap the positions
 /// @return ECHINUS_INVALID_ARGUMENT for another number of positions
 ECHINUS_API echinus_status echinus_embedding_carry(const echinus_embedding* embedding, const float* positions,
                                                    size_t position_count, size_t position_stride,
@@ -909,7 +915,7 @@ typedef enum echinus_stick_kind {
 } echinus_stick_kind;
 #define ECHINUS_STICK_KIND_COUNT 3
 
-/// Pulls or pushes two particles to a distance.
+/// A distance constraint, which pulls or pushes two particles to a distance.
 typedef struct echinus_stick {
     uint32_t a, b;
     float rest_length; ///< not negative
@@ -923,8 +929,8 @@ typedef struct echinus_attachment {
     uint32_t collider; ///< index in the simulation's colliders
 } echinus_attachment;
 
-/// A particle and a collider of a simulation that do not collide. Faces and edges of the particle pass
-/// through that collider, too.
+/// A particle and a collider of a simulation that do not collide. Faces and edges of the particle also pass
+/// through that collider.
 typedef struct echinus_collision_filter {
     uint32_t particle;
     uint32_t collider; ///< index in the simulation's colliders
@@ -937,10 +943,10 @@ typedef struct echinus_elastic_tetrahedron {
     float gradients[3][3]; ///< at rest: rows of the inverse of the matrix with columns b - a, c - a and d - a
     float volume;          ///< at rest; positive
     float mu, lambda;      ///< the Lame parameters: mu positive, lambda not negative
-    float damping;         ///< viscosity over mu, seconds
+    float damping;         ///< viscosity divided by mu, seconds
 } echinus_elastic_tetrahedron;
 
-/// Particles and what holds them together, in world units.
+/// Particles, their constraints and materials, in world units.
 typedef struct echinus_deformable echinus_deformable;
 
 /// The parts of a deformable, as arrays.
@@ -948,13 +954,13 @@ typedef struct echinus_deformable_arrays {
     size_t size;
     size_t particle_count;
     const float* positions;          ///< [3 particle_count]
-    const float* previous_positions; ///< [3 particle_count] one frame ago at these velocities; NULL: at rest
-    const float* inverse_masses;     ///< [particle_count] 0 for a pinned particle; NULL: 1 for all
-    const echinus_stick* sticks; ///< in the order in which they are relaxed; of Newton's cloth only threads
+    const float* previous_positions; ///< [3 particle_count] one frame ago; NULL: at rest
+    const float* inverse_masses;     ///< [particle_count] 0 for a pinned particle; NULL means 1 for all
+    const echinus_stick* sticks;     ///< in the order of relaxation; Newton uses only those of threads
     size_t stick_count;
     const uint32_t* faces; ///< [3 face_count]
     size_t face_count;
-    const echinus_attachment* attachments; ///< of pinned particles, at most one of each
+    const echinus_attachment* attachments; ///< of pinned particles, at most one for each
     size_t attachment_count;
     const echinus_elastic_tetrahedron* tetrahedra;
     size_t tetrahedron_count;
@@ -962,8 +968,8 @@ typedef struct echinus_deformable_arrays {
     size_t filter_count;
 } echinus_deformable_arrays;
 
-/// Copies the arrays. Whether they fit together is checked when a simulation is made of them.
-/// @param arrays  zero but for its size and what it has
+/// Copies the arrays. Their consistency is checked when a simulation is created from them.
+/// @param arrays  the caller sets its size and the used members; all others are zero
 ECHINUS_API echinus_status echinus_deformable_create(const echinus_deformable_arrays* arrays,
                                                      echinus_deformable** deformable);
 
@@ -971,7 +977,7 @@ ECHINUS_API echinus_status echinus_deformable_create(const echinus_deformable_ar
 /// A rectangular sheet: columns along x, rows along y, particle row * column_count + column.
 typedef struct echinus_cloth_options {
     size_t size;
-    /// Particles along x; in all at most 2^24 (2 to 8388608)
+    /// Particles along x; at most 2^24 in total (2 to 8388608)
     uint32_t column_count;
     /// Particles along y. The particle (row, column) has the number row * column_count + column (2 to
     /// 8388608)
@@ -980,9 +986,9 @@ typedef struct echinus_cloth_options {
     double width;
     /// Along y (positive)
     double height;
-    /// Where the middle of the sheet starts
+    /// Initial pose of the middle of the sheet
     echinus_pose pose;
-    /// [pin_count] particles that never move
+    /// [pin_count] particles that do not move
     const uint32_t* pins;
     size_t pin_count;
 } echinus_cloth_options;
@@ -990,7 +996,7 @@ typedef struct echinus_cloth_options {
 ECHINUS_API void echinus_cloth_options_init(echinus_cloth_options* options, size_t size);
 // End of options.
 
-/// A rectangular sheet of cloth.
+/// Makes a rectangular sheet of cloth.
 /// @param options  or NULL for the defaults
 ECHINUS_API echinus_status echinus_deformable_cloth(const echinus_cloth_options* options,
                                                     echinus_deformable** deformable);
@@ -1000,19 +1006,19 @@ typedef struct echinus_mesh_cloth_options {
     size_t size;
     /// A vertex starts at position + rotation * (scale * vertex)
     echinus_pose pose;
-    /// Factor of size, before the pose (1e-9 to 1e9)
+    /// Scale factor, applied before the pose (1e-9 to 1e9)
     double scale;
-    /// [3 rest_vertex_count] the shape at rest, where it is not that of the mesh: as many as the mesh has, or
-    /// none
+    /// [3 rest_vertex_count] the rest shape, if it differs from the mesh: as many vertices as the mesh has,
+    /// or none
     const float* rest_vertices;
     size_t rest_vertex_count;
     /// [2 thread_edge_count] edges without faces: threads and needles
     const uint32_t* thread_edges;
     size_t thread_edge_count;
-    /// [pin_count] vertices that never move
+    /// [pin_count] vertices that do not move
     const uint32_t* pins;
     size_t pin_count;
-    /// [attachment_count] vertices that move with a collider, and the number of that collider in the
+    /// [attachment_count] vertices that move with a collider, and the index of that collider in the
     /// simulation
     const echinus_attachment* attachments;
     size_t attachment_count;
@@ -1021,33 +1027,33 @@ typedef struct echinus_mesh_cloth_options {
 ECHINUS_API void echinus_mesh_cloth_options_init(echinus_mesh_cloth_options* options, size_t size);
 // End of options.
 
-/// A cloth whose particles are the vertices of a mesh.
+/// Makes a cloth whose particles are the vertices of a mesh.
 /// @param options  or NULL for the defaults
-/// @return ECHINUS_INVALID_MESH, naming a face, edge or vertex at fault; ECHINUS_INVALID_OPTIONS
+/// @return ECHINUS_INVALID_MESH, naming the face, edge or vertex; ECHINUS_INVALID_OPTIONS
 ECHINUS_API echinus_status echinus_deformable_cloth_of_mesh(const echinus_mesh* mesh,
                                                             const echinus_mesh_cloth_options* options,
                                                             echinus_deformable** deformable);
 
 // Options: soft_body. By bindings/generate_options from bindings/options.toml: edit that.
-/// The matter of a soft body, and where it starts; in SI units with metres, kilograms and seconds.
+/// The material and initial pose of a soft body; in SI units with metres, kilograms and seconds.
 typedef struct echinus_soft_body_options {
     size_t size;
     /// Water has 1000 kg/m^3 (1e-9 to 1e15 mass/length^3)
     double density;
     /// Stiffness; soft tissue has 1e3 to 1e5 Pa (1e-9 to 1e15 mass/(length s^2))
     double young_modulus;
-    /// Towards 0.5 the volume is kept (0 to 0.4999)
+    /// Near 0.5 the volume is preserved (0 to 0.4999)
     double poisson_ratio;
-    /// Viscosity over the shear modulus (0 to 1e9 s)
+    /// Viscosity divided by the shear modulus (0 to 1e9 s)
     double damping;
     /// A vertex starts at position + rotation * (scale * vertex)
     echinus_pose pose;
-    /// Factor of size, before the pose (1e-9 to 1e9)
+    /// Scale factor, applied before the pose (1e-9 to 1e9)
     double scale;
-    /// [pin_count] vertices that never move
+    /// [pin_count] vertices that do not move
     const uint32_t* pins;
     size_t pin_count;
-    /// [attachment_count] vertices that move with a collider, and the number of that collider in the
+    /// [attachment_count] vertices that move with a collider, and the index of that collider in the
     /// simulation
     const echinus_attachment* attachments;
     size_t attachment_count;
@@ -1056,32 +1062,33 @@ typedef struct echinus_soft_body_options {
 ECHINUS_API void echinus_soft_body_options_init(echinus_soft_body_options* options, size_t size);
 // End of options.
 
-/// A body at rest, whose particles are the vertices of the tetrahedra and whose faces their boundary.
+/// Makes a body at rest, whose particles are the vertices of the tetrahedra and whose faces are their
+/// boundary.
 /// @param options  or NULL for the defaults
 /// @return ECHINUS_INVALID_MESH when no tetrahedron uses a vertex; ECHINUS_INVALID_OPTIONS
 ECHINUS_API echinus_status echinus_deformable_soft_body(const echinus_tetrahedra* body,
                                                         const echinus_soft_body_options* options,
                                                         echinus_deformable** deformable);
 
-/// Several deformables as one, the particles of one part after those of the other: with self_collision they
-/// collide with each other.
+/// Combines several deformables into one, the particles of one part after those of the other. With
+/// self_collision they collide with each other.
 /// @param parts  [part_count]
-/// @return ECHINUS_INVALID_OPTIONS, naming the part, when one names a particle that it does not have
+/// @return ECHINUS_INVALID_OPTIONS, naming the part, if a part refers to a particle that it does not have
 ECHINUS_API echinus_status echinus_deformable_combine(const echinus_deformable* const* parts,
                                                       size_t part_count, echinus_deformable** deformable);
 
-/// The same deformable with all masses times a factor, finite and positive. ECHINUS_SOLVER_NEWTON weighs
-/// cloth by its density in the options of the simulation.
+/// Multiplies all masses of a deformable by a finite, positive factor. With ECHINUS_SOLVER_NEWTON the masses
+/// of cloth come from the density in the options of the simulation instead.
 ECHINUS_API echinus_status echinus_deformable_with_masses_times(const echinus_deformable* deformable,
                                                                 double factor, echinus_deformable** result);
 
-/// The same deformable, of which nothing collides with a collider. As a part of what
-/// echinus_deformable_combine() makes, it is a filter by pair.
+/// The same deformable, with filters that disable collision of all its particles with a collider. After
+/// echinus_deformable_combine() the filters apply to this part only.
 /// @param collider  index in the simulation's colliders
 ECHINUS_API echinus_status echinus_deformable_passing_through(const echinus_deformable* deformable,
                                                               uint32_t collider, echinus_deformable** result);
 
-/// @param arrays  out, its size is set; its pointers are valid as long as the deformable
+/// @param arrays  out, the caller sets its size; its pointers are valid as long as the deformable
 ECHINUS_API echinus_status echinus_deformable_read(const echinus_deformable* deformable,
                                                    echinus_deformable_arrays* arrays);
 
@@ -1089,128 +1096,131 @@ ECHINUS_API void echinus_deformable_destroy(echinus_deformable* deformable);
 
 // ---- Simulations ----
 
-/// How a deformable moves.
+/// The method by which a deformable moves.
 typedef enum echinus_solver {
-    ECHINUS_SOLVER_NEWTON = 0,  ///< as a continuous material in SI units
-    ECHINUS_SOLVER_JAKOBSEN = 1 ///< by the paper: sticks and particles that collide, no surfaces
+    ECHINUS_SOLVER_NEWTON = 0,  ///< a continuous material in SI units
+    ECHINUS_SOLVER_JAKOBSEN = 1 ///< the paper's solver: distance constraints and collision of particles
 } echinus_solver;
 
-/// In place of a thickness: it is chosen by the library.
+/// In place of a thickness: the library chooses it.
 #define ECHINUS_THICKNESS_CHOSEN (-1.0)
 
 // Options: simulation. By bindings/generate_options from bindings/options.toml: edit that.
-/// SimulationOptions in simulation.hpp tells how much each member costs.
+/// SimulationOptions in simulation.hpp describes the cost of each member.
 typedef struct echinus_simulation_options {
     size_t size;
-    /// Seconds per frame. The paper's solver needs smaller ones: half of it takes twice the time there and
-    /// leaves a quarter of the stretch (1e-9 to 1e9 s)
+    /// Seconds per frame. The paper's solver needs smaller steps: there, halving the step doubles the
+    /// computing time and leaves a quarter of the stretch (1e-9 to 1e9 s)
     double time_step;
-    /// Newton: a continuous material in SI units; jakobsen: sticks and particles that collide, and nothing
-    /// else, as the paper has it
+    /// Newton: a continuous material in SI units; jakobsen: the paper's solver, with distance constraints and
+    /// collision of particles only
     echinus_solver solver;
-    /// Jakobsen only: relaxations per frame, each of all sticks and then of all contacts; more cost time and
-    /// leave less stretch (1 to 1e6)
+    /// Jakobsen only: relaxations per frame, each of all distance constraints and then of all contacts; more
+    /// relaxations take longer and leave less stretch (1 to 1e6)
     uint32_t iteration_count;
-    /// Newton only: at most so many steps of Newton's method in a frame; fewer where it has converged (1 to
-    /// 1000)
+    /// Newton only: the largest number of steps of Newton's method per frame; fewer are taken if it converges
+    /// (1 to 1000)
     uint32_t newton_step_count;
-    /// For how many frames in a row all particles have to be slow and near one place (1 to 1e9)
+    /// The number of consecutive frames for which all particles must be slow and near one position (1 to 1e9)
     uint32_t rest_frame_count;
-    /// How far a particle at rest may be from its place (0 to 1e9)
+    /// The largest distance of a particle at rest from its position (0 to 1e9)
     double rest_distance;
-    /// How fast a particle at rest may be at the end of a frame (at least 0 length/s)
+    /// The largest speed of a particle at rest at the end of a frame (at least 0 length/s)
     double rest_speed;
-    /// Where down is. A model whose y is up needs [0, -9.81, 0] (-1e9 to 1e9 length/s^2)
+    /// The acceleration of gravity. A model whose y axis points up needs [0, -9.81, 0] (-1e9 to 1e9
+    /// length/s^2)
     double gravity[3];
     /// Jakobsen only: share of the velocity that is lost per frame; another time_step makes another drag (0
     /// to 1)
     double drag;
-    /// Jakobsen only: share of a stick's error that one relaxation removes, of structural, shear and bending
-    /// sticks (0 to 1.99)
+    /// Jakobsen only: share of a constraint's error that one relaxation removes, for structural, shear and
+    /// bending constraints (0 to 1.99)
     double stiffness[ECHINUS_STICK_KIND_COUNT];
-    /// Distance that the deformable keeps from colliders, by default half the mean length of structural
-    /// sticks at rest (0 to 1e9), or ECHINUS_THICKNESS_CHOSEN
+    /// Distance that the deformable keeps from colliders, by default half the mean rest length of structural
+    /// constraints (0 to 1e9), or ECHINUS_THICKNESS_CHOSEN
     double thickness;
-    /// Distance that layers keep from each other, with self_collision; near small faces less. By default the
+    /// Distance that layers keep from each other, with self_collision; less near small faces. By default the
     /// thickness (0 to 1e9), or ECHINUS_THICKNESS_CHOSEN
     double self_thickness;
-    /// Coulomb's coefficient between cloth and model; 0 is ice (0 to 1e9)
+    /// Coulomb's coefficient between cloth and model; 0 is no friction (0 to 1e9)
     double friction;
-    /// A particle farther than this from the middle of where all began ends the simulation as diverged; 0: 10
-    /// 000 times the extent at the start (0 to 1e30)
+    /// The largest distance of a particle from the initial middle of all particles; a particle farther away
+    /// ends the simulation as diverged. 0: 10 000 times the initial extent (0 to 1e30)
     double bound;
     /// Rescue particles that would pass through an exact map
     int32_t keep_free;
-    /// Accept exact maps of open meshes, for which nothing is promised. Surface collision needs no such
-    /// permission
+    /// Accept exact maps of open meshes, for which nothing is guaranteed. Surface collision does not need
+    /// this option
     int32_t allow_open_colliders;
-    /// Faces and edges keep off the model, too: none of them intersects it at the end of a frame, within
+    /// Faces and edges collide with the model, too: none of them intersects it at the end of a frame, within
     /// limits
     int32_t surface_collision;
-    /// Nor do two faces of what deforms intersect; needs surface_collision
+    /// Faces of the deformable do not intersect each other either; needs surface_collision
     int32_t self_collision;
-    /// A start that intersects, or is inside the model, is parted before the first frame instead of refused;
-    /// needs surface_collision
+    /// Separate a start that intersects, or is inside the model, before the first frame instead of refusing
+    /// it; needs surface_collision
     int32_t untangle;
-    /// Threads that compute a frame; 0: all cores. The same bits with any number (0 to 1024)
+    /// Threads that compute a frame; 0: all cores. The results do not depend on it, bit for bit (0 to 1024)
     uint32_t thread_count;
-    /// Newton only, as the four that follow: mass of the cloth per area (1e-6 to 1e6 kg/m^2)
+    /// Newton only, like the next four: mass of the cloth per area (1e-6 to 1e6 kg/m^2)
     double density;
-    /// Force per width against stretching of warp and weft (1e-6 to 1e9 N/m)
+    /// Force per width that resists stretching of warp and weft (1e-6 to 1e9 N/m)
     double stretch_stiffness;
-    /// Force per width against shear between them (0 to 1e9 N/m)
+    /// Force per width that resists shear between warp and weft (0 to 1e9 N/m)
     double shear_stiffness;
-    /// Moment per width and curvature against folding (0 to 1e6 N m)
+    /// Moment per width and curvature that resists bending (0 to 1e6 N m)
     double bending_stiffness;
-    /// Viscosity of the cloth over its stiffness (0 to 1e6 s)
+    /// Viscosity of the cloth divided by its stiffness (0 to 1e6 s)
     double damping;
-    /// Newton only: a step of Newton's method has converged if the energy that it gains could move particles
-    /// no farther than this in the root mean square; share of the mean edge length (0 to 1)
+    /// Newton only: tolerance of Newton's method, relative to the mean edge length. It has converged if the
+    /// decrease of the energy corresponds to a root-mean-square displacement of at most this length (0 to 1)
     double newton_tolerance;
-    /// Newton only: resistance of still air, the rate at which a velocity decays that nothing keeps up; 0 is
-    /// a vacuum (0 to 1e6 1/s)
+    /// Newton only: resistance of still air, the rate at which a free velocity decays; 0 is a vacuum (0 to
+    /// 1e6 1/s)
     double air_drag;
     /// Velocity of the air; needs wind_rate (-1e9 to 1e9 length/s)
     double wind[3];
-    /// Of the air's velocity across a face, along its normal, particles take on so much per second: the
-    /// higher, the lighter the cloth. 0: no air. Without wind the air is at rest and brakes (0 to 1e9 1/s)
+    /// The share of the air's velocity relative to a face, along its normal, that particles take on per
+    /// second; higher for lighter cloth. 0: no air. Without wind the air is at rest and slows motion (0 to
+    /// 1e9 1/s)
     double wind_rate;
-    /// Newton only: pressure inside the closed pieces of cloth, beyond that around them; constant, as that of
-    /// a pump (0 to 1e9 N/m^2)
+    /// Newton only: pressure inside the closed pieces of cloth in excess of the surrounding pressure;
+    /// constant, like that of a pump (0 to 1e9 N/m^2)
     double pressure;
 } echinus_simulation_options;
 
 ECHINUS_API void echinus_simulation_options_init(echinus_simulation_options* options, size_t size);
 // End of options.
 
-/// A deformable among colliders. The same input gives the same positions bit for bit.
+/// The simulation of a deformable and its colliders. The same input gives the same positions bit for bit.
 typedef struct echinus_simulation echinus_simulation;
 
-/// Copies the deformable and keeps what it needs of the maps: all arguments may go afterwards.
+/// Creates a simulation. It copies the deformable and keeps the data that it needs of the maps, so all
+/// arguments may be destroyed afterwards.
 /// @param colliders  [collider_count]
 /// @param options    or NULL for the defaults
-/// @return ECHINUS_INVALID_OPTIONS, naming what is at fault; ECHINUS_INVALID_ARGUMENT also for more colliders
-/// than memory can hold
+/// @return ECHINUS_INVALID_OPTIONS, naming the fault; ECHINUS_INVALID_ARGUMENT also for more colliders than
+/// memory can hold
 ECHINUS_API echinus_status echinus_simulation_create(const echinus_deformable* deformable,
                                                      const echinus_collider* colliders, size_t collider_count,
                                                      const echinus_simulation_options* options,
                                                      echinus_simulation** simulation);
 
-/// An independent copy in the present state.
+/// Makes an independent copy in the present state.
 ECHINUS_API echinus_status echinus_simulation_copy(const echinus_simulation* simulation,
                                                    echinus_simulation** copy);
 
 ECHINUS_API void echinus_simulation_destroy(echinus_simulation* simulation);
 
-/// All that decides how a simulation goes on, but for what it was made of (docs/saved_states.md).
+/// Returns the state of a simulation without its inputs (docs/saved_states.md).
 /// @param state  out, unsigned char
 ECHINUS_API echinus_status echinus_simulation_save_state(const echinus_simulation* simulation,
                                                          echinus_array** state);
-/// Another simulation, made of the same as the one given, that goes on from a saved state with the same bits.
-/// The one given stays as it is.
-/// @param bytes  [byte_count]; checked before use, whatever they are
-/// @return ECHINUS_WRONG_FORMAT, ECHINUS_UNSUPPORTED_VERSION or ECHINUS_DAMAGED for bytes that are no state
-/// of this version; ECHINUS_INVALID_OPTIONS for a state of another simulation, saying what differs
+/// Makes another simulation with the same inputs as the given one that resumes from a saved state bit for
+/// bit. The given simulation does not change.
+/// @param bytes  [byte_count]; all bytes are checked before use
+/// @return ECHINUS_WRONG_FORMAT, ECHINUS_UNSUPPORTED_VERSION or ECHINUS_DAMAGED for bytes that are not a
+/// state of this version; ECHINUS_INVALID_OPTIONS for a state of another simulation, naming the difference
 ECHINUS_API echinus_status echinus_simulation_restored(const echinus_simulation* simulation,
                                                        const void* bytes, size_t byte_count,
                                                        echinus_simulation** restored);
@@ -1220,24 +1230,25 @@ ECHINUS_API echinus_status echinus_simulation_restored(const echinus_simulation*
 ECHINUS_API echinus_status echinus_simulation_step(echinus_simulation* simulation);
 
 ECHINUS_API size_t echinus_simulation_particle_count(const echinus_simulation* simulation);
-/// [3 particle_count] x, y, z of all particles now: the address stays the same as long as the simulation
-/// lives, and each step writes there.
+/// [3 particle_count] The present positions x, y, z of all particles. The address does not change as long as
+/// the simulation exists, and each step overwrites the values.
 ECHINUS_API const float* echinus_simulation_positions(const echinus_simulation* simulation);
 /// All arrays of the deformable in its present state.
-/// @param arrays  out, its size is set; its pointers are valid as long as the simulation
+/// @param arrays  out, the caller sets its size; its pointers are valid as long as the simulation
 ECHINUS_API echinus_status echinus_simulation_read(const echinus_simulation* simulation,
                                                    echinus_deformable_arrays* arrays);
 
-/// Frames computed so far.
+/// Number of frames computed so far.
 ECHINUS_API uint32_t echinus_simulation_frame(const echinus_simulation* simulation);
 /// Has the rest condition held for the required number of frames?
 ECHINUS_API int32_t echinus_simulation_at_rest(const echinus_simulation* simulation);
 /// Speed of the fastest particle in the last frame, units per second; infinite before the first.
 ECHINUS_API double echinus_simulation_largest_speed(const echinus_simulation* simulation);
-/// XXH64 of the bits of all positions and previous positions.
+/// XXH64 hash of the bits of all positions and previous positions.
 ECHINUS_API uint64_t echinus_simulation_state_hash(const echinus_simulation* simulation);
 
-/// Times and counts since the simulation began. Times are not part of the result.
+/// Times and counts since the simulation began, as in SimulationProfile in simulation.hpp. Times vary from
+/// run to run.
 typedef struct echinus_simulation_profile {
     size_t size;
     double integration_seconds;
@@ -1253,42 +1264,42 @@ typedef struct echinus_simulation_profile {
     uint64_t squeezed_count;
 } echinus_simulation_profile;
 
-/// @param profile  out; its size is set
+/// @param profile  out; the caller sets its size
 ECHINUS_API echinus_status echinus_simulation_read_profile(const echinus_simulation* simulation,
                                                            echinus_simulation_profile* profile);
 
-/// Of the structural sticks, how far their lengths are from those at rest at the end of the last frame, as a
-/// share of these; 0.01 is 1 %, and 0 where there are no such sticks. Under ECHINUS_SOLVER_JAKOBSEN it is
-/// what relaxations have left undone.
+/// The relative deviation of structural constraints from their rest lengths at the end of the last frame;
+/// 0.01 is 1 %, and 0 without such constraints. With ECHINUS_SOLVER_JAKOBSEN it is the residual error of the
+/// relaxations.
 /// @param root_mean_square, largest  [1] out
 ECHINUS_API echinus_status echinus_simulation_residual(const echinus_simulation* simulation,
                                                        double* root_mean_square, double* largest);
 
-/// The options as given, with the thickness in force.
-/// @param options  out; its size is set
+/// The given options, with the effective thickness.
+/// @param options  out; the caller sets its size
 ECHINUS_API echinus_status echinus_simulation_read_options(const echinus_simulation* simulation,
                                                            echinus_simulation_options* options);
 
 ECHINUS_API size_t echinus_simulation_collider_count(const echinus_simulation* simulation);
 /// A collider in its present pose.
-/// @param collider  out, its size is set; its map is valid as long as the simulation, and for a collider that
-///                  deforms it is that of its present vertices until the collider is read again
+/// @param collider  out, the caller sets its size; its map is valid as long as the simulation. The map of a
+/// deforming collider is that of its present vertices until the collider is read again
 ECHINUS_API echinus_status echinus_simulation_read_collider(const echinus_simulation* simulation,
                                                             size_t index, echinus_collider* collider);
 
-/// Steers a collider: it keeps these velocities until they are set again.
+/// Sets the velocities of a collider, which it keeps until they are set again.
 /// @param linear, angular  [3] finite
 ECHINUS_API echinus_status echinus_simulation_set_collider_velocity(echinus_simulation* simulation,
                                                                     size_t index, const double* linear,
                                                                     const double* angular);
 
-/// The next frame leads the collider to this pose, evenly and the shorter way round, and leaves it there.
-/// Until the next call it stands still.
+/// The collider moves to this pose during the next frame, at constant velocity and rotating along the shorter
+/// arc, and then stays there until the next call.
 ECHINUS_API echinus_status echinus_simulation_set_collider_pose(echinus_simulation* simulation, size_t index,
                                                                 const echinus_pose* pose);
 
-/// A collider follows the keys: each frame leads it to where echinus_pose_at() has it at the frame's end. It
-/// does so from where it is, so begin it there. Without keys it stands still.
+/// The collider follows keyframes: each frame moves it to the pose of echinus_pose_at() at the frame's end.
+/// It starts from its present pose, so place it there first. Without keys it does not move.
 /// @param keys  [key_count]; their times ascend, in seconds since the simulation began
 /// @return ECHINUS_INVALID_OPTIONS, naming the key
 ECHINUS_API echinus_status echinus_simulation_set_collider_keyframes(echinus_simulation* simulation,
@@ -1296,25 +1307,24 @@ ECHINUS_API echinus_status echinus_simulation_set_collider_keyframes(echinus_sim
                                                                      const echinus_pose_key* keys,
                                                                      size_t key_count);
 
-/// The next frame leads the vertices of a collider here, each on a straight way; then they rest. Needs an
-/// exact map and options.surface_collision; the map is built anew in this call.
-/// @param vertices  [vertex_count] in the model's own frame, as many and in the order of the mesh that its
-/// map
-///                  was built of
+/// During the next frame the vertices of a collider move to these positions along straight lines; then they
+/// stop. This needs an exact map and options.surface_collision; the map is rebuilt in this call.
+/// @param vertices  [vertex_count] in the model's own frame, in the number and order of the mesh from which
+/// its map was built
 /// @return ECHINUS_INVALID_OPTIONS; then nothing has changed
 ECHINUS_API echinus_status echinus_simulation_set_collider_vertices(echinus_simulation* simulation,
                                                                     size_t index, const float* vertices,
                                                                     size_t vertex_count,
                                                                     size_t vertex_stride);
 
-/// Each frame leads the vertices of a collider to where echinus_vertex_cache_at() has them at the frame's
-/// end. The cache may go afterwards.
+/// Each frame moves the vertices of a collider to those of echinus_vertex_cache_at() at the frame's end. The
+/// cache may be destroyed afterwards.
 /// @return as above
 ECHINUS_API echinus_status echinus_simulation_set_collider_cache(echinus_simulation* simulation, size_t index,
                                                                  const echinus_vertex_cache* cache);
 
-/// The load that the deformable put on a collider in the last frame by contact and friction, as its mean over
-/// the frame; 0 before the first, and always under ECHINUS_SOLVER_JAKOBSEN.
+/// The load that the deformable exerted on a collider in the last frame by contact and friction, averaged
+/// over the frame; 0 before the first frame, and always with ECHINUS_SOLVER_JAKOBSEN.
 /// @param force   [3] out, N
 /// @param torque  [3] out, N m, about the pose's translation, as it moves
 ECHINUS_API echinus_status echinus_simulation_load_on(const echinus_simulation* simulation, size_t index,
@@ -1331,8 +1341,8 @@ ECHINUS_API echinus_status echinus_simulation_set_collider_free(echinus_simulati
 /// In place of the number of a collider or of a particle.
 #define ECHINUS_NONE UINT32_MAX
 
-/// A contact that pushed in the last frame: of a particle, an edge or a face of the deformable with a
-/// collider, or of two of its own.
+/// A contact that pushed in the last frame, between a particle, edge or face of the deformable and a
+/// collider, or between two elements of the deformable.
 typedef struct echinus_contact_point {
     double position[3];    ///< on the deformable, at the end of the frame; world coordinates
     double normal[3];      ///< unit, towards the deformable; towards its first part where both are its own
@@ -1340,12 +1350,12 @@ typedef struct echinus_contact_point {
     double normal_impulse; ///< on the deformable (its first part) along the normal in the frame, N s
     double friction_impulse[3]; ///< the same across the normal, N s
     uint32_t collider;          ///< ECHINUS_NONE: the contact is of the deformable with itself
-    /// Of the first part, and then of the second one if it is the deformable's own, too: a vertex and the
-    /// three of a face, or two and two of edges. ECHINUS_NONE where there are fewer.
+    /// The particles of the first element, followed by those of the second one in self-collision: a vertex
+    /// and the three of a face, or two and two of edges. Unused entries are ECHINUS_NONE.
     uint32_t particles[4];
 } echinus_contact_point;
 
-/// Whether the frames that follow record the contacts that push; off at the beginning. Not part of a saved
+/// Sets whether the following frames record the contacts that push; off by default. It is not part of a saved
 /// state.
 ECHINUS_API echinus_status echinus_simulation_record_contacts(echinus_simulation* simulation, int32_t is_on);
 
@@ -1356,27 +1366,27 @@ ECHINUS_API echinus_status echinus_simulation_record_contacts(echinus_simulation
 ECHINUS_API echinus_status echinus_simulation_contact_points(const echinus_simulation* simulation,
                                                              echinus_array** points);
 
-/// Gives a particle a velocity, from which the next frame goes on. A pinned particle stays.
+/// Sets the velocity of a particle for the next frame. A pinned particle does not move.
 /// @param velocity  [3] finite, units per second
 ECHINUS_API echinus_status echinus_simulation_set_particle_velocity(echinus_simulation* simulation,
                                                                     size_t particle, const double* velocity);
 
-/// Wind for the time of one frame.
-/// @param wind  [3] of the air, finite, units per second
-/// @param rate  per second: the higher, the lighter the cloth; finite, not negative
+/// Sets the wind for one frame.
+/// @param wind  [3] velocity of the air, finite, units per second
+/// @param rate  per second; higher for lighter cloth; finite, not negative
 ECHINUS_API echinus_status echinus_simulation_blow(echinus_simulation* simulation, const double* wind,
                                                    double rate);
 
-// ---- Collision for a solver of one's own (docs/own_solver.md) ----
+// ---- Collision for your own solver (docs/own_solver.md) ----
 
 // Options: particle_collision. By bindings/generate_options from bindings/options.toml: edit that.
 typedef struct echinus_particle_collision_options {
     size_t size;
-    /// Coulomb's coefficient between particle and model; 0 is ice (0 to 1e9)
+    /// Coulomb's coefficient between particle and model; 0 is no friction (0 to 1e9)
     double friction;
-    /// Accept exact maps of open meshes, for which nothing is promised
+    /// Accept exact maps of open meshes, for which nothing is guaranteed
     int32_t allow_open_colliders;
-    /// Threads that share a step; 0: all cores. The same bits with any number (0 to 1024)
+    /// Threads that share a step; 0: all cores. The results do not depend on it, bit for bit (0 to 1024)
     uint32_t thread_count;
 } echinus_particle_collision_options;
 
@@ -1387,8 +1397,9 @@ ECHINUS_API void echinus_particle_collision_options_init(echinus_particle_collis
 /// Keeps the particles of any solver out of models: particle_collision.hpp.
 typedef struct echinus_particle_collision echinus_particle_collision;
 
-/// Keeps what it needs of the maps: all arguments may go afterwards.
-/// @param colliders  [collider_count] where they stand; their velocities do not count
+/// Creates collision for particles. It keeps the data that it needs of the maps, so all arguments may be
+/// destroyed afterwards.
+/// @param colliders  [collider_count] in their initial poses; their velocities are ignored
 /// @param thickness  the distance that particles keep from the surface; not negative
 /// @param options    or NULL for the defaults
 /// @return as echinus_simulation_create()
@@ -1398,49 +1409,51 @@ ECHINUS_API echinus_status echinus_particle_collision_create(
 /// May be NULL.
 ECHINUS_API void echinus_particle_collision_destroy(echinus_particle_collision* collision);
 
-/// The solver's next step leads a collider there, evenly and the shorter way round; then it rests.
+/// Moves a collider to a pose during the solver's next step, at constant velocity and rotating along the
+/// shorter arc. Then it stops.
 ECHINUS_API echinus_status echinus_particle_collision_set_collider_pose(echinus_particle_collision* collision,
                                                                         size_t index,
                                                                         const echinus_pose* pose);
-/// The collider is there from now on: nothing is swept on the way.
+/// Places a collider at a pose at once: nothing is swept in between.
 ECHINUS_API echinus_status echinus_particle_collision_place_collider(echinus_particle_collision* collision,
                                                                      size_t index, const echinus_pose* pose);
 
-/// Of one collider, in place of the options' friction.
+/// Sets the friction of one collider, in place of that of the options.
 ECHINUS_API echinus_status echinus_particle_collision_set_collider_friction(
     echinus_particle_collision* collision, size_t index, double friction);
 
-/// Corrects the particles after a step of the solver, and moves the colliders. No NaN harms it: see
-/// ParticleCollision::correct().
-/// @param previous_positions  [3 particle_count] where the step began
-/// @param positions       [3 particle_count] in: where the solver has put them. Out: corrected
+/// Corrects the particles after a step of the solver, and moves the colliders. ParticleCollision::correct()
+/// describes the treatment of NaN.
+/// @param previous_positions  [3 particle_count] at the start of the step
+/// @param positions       [3 particle_count] in: the solver's positions; out: corrected positions
 /// @param velocities      [3 particle_count] in and out, units per second; or NULL
 /// @param inverse_masses  [particle_count] 0 for pinned particles; or NULL: all are pushed
-/// @param seconds         that the step took; positive
-/// @param corrected       out: [corrected_count] the particles that were corrected, ascending; until the
-///                        next call; or NULL
+/// @param seconds         the duration of the step; positive
+/// @param corrected       out: [corrected_count] the indices of corrected particles, ascending; valid
+///                        until the next call; or NULL
 /// @param corrected_count out; or NULL
 ECHINUS_API echinus_status echinus_particle_collision_correct(
     echinus_particle_collision* collision, const float* previous_positions, float* positions,
     float* velocities, const float* inverse_masses, size_t particle_count, double seconds,
     const uint32_t** corrected, size_t* corrected_count);
 
-/// How often a particle has ended a step inside an exact map, or behind its surface, though it was outside.
+/// The number of times that a particle that was once outside ended a step inside an exact map, or on the
+/// other side of its surface.
 ECHINUS_API uint64_t echinus_particle_collision_lost_count(const echinus_particle_collision* collision);
 
 // Options: surface_collision. By bindings/generate_options from bindings/options.toml: edit that.
 typedef struct echinus_surface_collision_options {
     size_t size;
-    /// Coulomb's coefficient; 0 is ice (0 to 1e9)
+    /// Coulomb's coefficient; 0 is no friction (0 to 1e9)
     double friction;
-    /// Distance that layers keep from each other; near small faces less. By default the thickness (0 to 1e9),
+    /// Distance that layers keep from each other; less near small faces. By default the thickness (0 to 1e9),
     /// or ECHINUS_THICKNESS_CHOSEN
     double self_thickness;
-    /// Faces do not meet each other either
+    /// Faces do not intersect each other either
     int32_t self_collision;
-    /// A start that intersects, or is inside the model, is parted instead of refused
+    /// Separate a start that intersects, or is inside the model, instead of refusing it
     int32_t untangle;
-    /// Threads that share a step; 0: all cores. The same bits with any number (0 to 1024)
+    /// Threads that share a step; 0: all cores. The results do not depend on it, bit for bit (0 to 1024)
     uint32_t thread_count;
     /// 0
     uint32_t reserved;
@@ -1450,14 +1463,15 @@ ECHINUS_API void echinus_surface_collision_options_init(echinus_surface_collisio
                                                         size_t size);
 // End of options.
 
-/// Keeps the faces that join the particles of any solver off models and off each other:
+/// Keeps the faces between the particles of any solver off models and off each other:
 /// surface_collision.hpp.
 typedef struct echinus_surface_collision echinus_surface_collision;
 
-/// Copies the arrays and keeps what it needs of the maps.
-/// @param positions  [3 particle_count] where the particles begin: no faces meet there, but see untangle
-/// @param faces      [3 face_count] of those particles; at least one
-/// @param colliders  [collider_count] where they stand; their velocities do not count
+/// Creates collision for surfaces. It copies the arrays and keeps the data that it needs of the maps.
+/// @param positions  [3 particle_count] the initial positions, at which no faces may intersect (but see
+/// untangle)
+/// @param faces      [3 face_count] the faces between the particles; at least one
+/// @param colliders  [collider_count] in their initial poses; their velocities are ignored
 /// @param thickness  the distance to keep from colliders; not negative
 /// @param options    or NULL for the defaults
 /// @return as echinus_simulation_create()
@@ -1470,19 +1484,19 @@ ECHINUS_API echinus_status echinus_surface_collision_create(const float* positio
 /// May be NULL.
 ECHINUS_API void echinus_surface_collision_destroy(echinus_surface_collision* collision);
 
-/// As echinus_particle_collision_set_collider_pose().
+/// Like echinus_particle_collision_set_collider_pose().
 ECHINUS_API echinus_status echinus_surface_collision_set_collider_pose(echinus_surface_collision* collision,
                                                                        size_t index,
                                                                        const echinus_pose* pose);
 
-/// Corrects the particles after a step of the solver, which began where the last one ended, and moves the
-/// colliders.
-/// @param positions       [3 particle_count] in: where the solver has put them. Out: corrected
+/// Corrects the particles after a step of the solver, which starts from the positions at the end of the last
+/// one, and moves the colliders.
+/// @param positions       [3 particle_count] in: the solver's positions; out: corrected positions
 /// @param velocities      [3 particle_count] in and out, units per second; or NULL
-/// @param particle_count  as the collision has
-/// @param seconds         that the step took; positive
-/// @param corrected       out: [corrected_count] the particles that were corrected, ascending; until the
-///                        next call; or NULL
+/// @param particle_count  the number of particles of the object
+/// @param seconds         the duration of the step; positive
+/// @param corrected       out: [corrected_count] the indices of corrected particles, ascending; valid
+///                        until the next call; or NULL
 /// @param corrected_count out; or NULL
 ECHINUS_API echinus_status echinus_surface_collision_correct(echinus_surface_collision* collision,
                                                              float* positions, float* velocities,
@@ -1490,30 +1504,32 @@ ECHINUS_API echinus_status echinus_surface_collision_correct(echinus_surface_col
                                                              const uint32_t** corrected,
                                                              size_t* corrected_count);
 
-/// [3 particle_count] where the particles are, and nothing meets: the address stays the same.
+/// [3 particle_count] The present positions, which are free of intersections. The address does not change.
 ECHINUS_API const float* echinus_surface_collision_positions(const echinus_surface_collision* collision);
-/// Pairs of parts of faces for which no room was proven, summed over all steps; 0: no faces meet.
+/// Unresolved pairs of elements, for which no free space was proven, summed over all steps; if 0, no faces
+/// intersect.
 ECHINUS_API uint64_t echinus_surface_collision_unresolved_count(const echinus_surface_collision* collision);
 
 // ---- Scenes: simulations as JSON (docs/scenes.md) ----
 
 typedef struct echinus_scene echinus_scene;
 
-/// @return ECHINUS_UNREADABLE or ECHINUS_INVALID_SCENE, naming the key at fault
+/// Reads a scene.
+/// @return ECHINUS_UNREADABLE or ECHINUS_INVALID_SCENE, naming the key
 ECHINUS_API echinus_status echinus_scene_read(const char* path, echinus_scene** scene);
 
-/// The same from text.
-/// @param name  stands for the path in errors; files of the scene are looked for in its folder, if it has one
+/// Reads a scene from text.
+/// @param name  replaces the path in error messages; files of the scene are looked up in its folder, if it
+/// has one
 ECHINUS_API echinus_status echinus_scene_parse(const char* json, const char* name, echinus_scene** scene);
 
 ECHINUS_API void echinus_scene_destroy(echinus_scene* scene);
 
-/// The frame at which the simulation is to end at the latest.
+/// The number of frames after which the simulation should end at the latest.
 ECHINUS_API uint32_t echinus_scene_frame_limit(const echinus_scene* scene);
 
-/// Reads or generates the meshes of a scene, repairs its models as it says, builds their maps and makes the
-/// simulation. Files are looked for in the folders, then in the scene's folder and in ../models beside
-/// it.
+/// Reads or generates the meshes of a scene, makes the requested repairs, builds the maps and creates the
+/// simulation. Files are looked up in the given folders, then in the scene's folder and in its ../models.
 /// @param folders  [folder_count] paths
 /// @return as echinus_mesh_read(), the builds and echinus_simulation_create()
 ECHINUS_API echinus_status echinus_simulation_from_scene(const echinus_scene* scene,
