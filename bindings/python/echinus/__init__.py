@@ -1,12 +1,12 @@
-"""Maps of meshes: which points are inside, how deep, and the way out; and cloth and soft bodies that collide with them.
+"""Maps of meshes, which tell whether points are inside and how deep, and cloth and soft bodies that collide with them.
 
 All points are in the frame and the unit of the mesh. Arrays of points have the shape ``(..., 3)``, answers
-the shape ``(...)``. An array of type float32 whose points have their three coordinates side by side is read
-in place, whatever the distance from one point to the next; others are converted to float32 first. Give the
-points of a map far from 0 as float64: they are made relative to its ``origin`` before.
+the shape ``(...)``. A float32 array whose points have three contiguous coordinates is read in place, whatever the
+stride; other arrays are converted to float32 first. Pass the points of a map far from 0 as float64: they are made
+relative to its ``origin`` first.
 
-Functions that compute for long release Python's lock. A refusal of the C++ library raises :class:`Error` with
-its sentence; arrays of a wrong shape or type raise ``ValueError`` or ``TypeError``.
+Long computations release Python's global interpreter lock. Errors of the C++ library are raised as :class:`Error`
+with its message; arrays of a wrong shape or type raise ``ValueError`` or ``TypeError``.
 """
 
 from echinus._core import available_instruction_sets, instruction_set, use_instruction_set

@@ -25,15 +25,15 @@ class Collider:
     Attributes
     ----------
     map
-        One map may serve several colliders. Contact of surfaces needs an exact one.
+        Several colliders may share a map. Surface collision needs an exact map.
     rotation
         Unit quaternion w, x, y, z; :func:`rotation_about` makes one.
     scale
-        A number, or one for each axis of the map; not 0. A negative one mirrors.
+        A number, or one for each axis of the map; not 0. A negative number mirrors.
     linear_velocity, angular_velocity
         Units per second, and radians per second about the position.
     name
-        For errors; if empty, "collider" and its number.
+        For error messages; if empty, "collider" and its index.
     """
 
     map: AnyMap
@@ -61,7 +61,7 @@ class Collider:
 
 @dataclass(frozen=True)
 class ColliderState:
-    """Where a model is now: point_world = position + rotation * (scale * point_local).
+    """The present pose of a model: point_world = position + rotation * (scale * point_local).
 
     Attributes
     ----------
@@ -110,7 +110,7 @@ class ContactPoints(NamedTuple):
 
 
 class Load(NamedTuple):
-    """The load on a collider, in the world's axes.
+    """The load on a collider, in world axes.
 
     Attributes
     ----------
@@ -125,7 +125,7 @@ class Load(NamedTuple):
 
 
 class PoseKey(NamedTuple):
-    """Where a collider is at a time, in seconds; the rotation is a unit quaternion w, x, y, z."""
+    """A keyframe: the pose of a collider at a time, in seconds; the rotation is a unit quaternion w, x, y, z."""
 
     time: float
     position: Sequence[float]
@@ -140,9 +140,10 @@ def key_arguments(keys: Sequence[PoseKey]) -> list[_core.KeyArguments]:
 
 
 def pose_at(keys: Sequence[PoseKey], seconds: float) -> PoseKey:
-    """The pose at a time: from key to key straight, and about one axis the shorter way round, both evenly.
+    """The pose at a time, interpolated between two keys: the position linearly, the rotation along the shorter
+    arc (slerp).
 
-    Before the first key and after the last it is theirs.
+    Before the first key and after the last the pose is that of the key.
 
     Parameters
     ----------
@@ -154,14 +155,14 @@ def pose_at(keys: Sequence[PoseKey], seconds: float) -> PoseKey:
 
 
 def rotation_about(axis: Sequence[float], angle_rad: float) -> Quaternion:
-    """The unit quaternion w, x, y, z that turns by an angle about an axis, counter-clockwise seen against it."""
+    """The unit quaternion w, x, y, z of a rotation about an axis, counter-clockwise seen from the tip of the axis."""
     return _core.rotation_about(vector("axis", axis), number("angle_rad", angle_rad))
 
 
 class VertexCache:
-    """The vertices of a model over time, in samples at equal distances.
+    """The vertices of a model over time, in equally spaced samples.
 
-    Between two samples vertices go straight; before the first and after the last they rest.
+    Between two samples vertices are interpolated linearly; before the first and after the last they do not move.
 
     Parameters
     ----------
@@ -224,14 +225,15 @@ def read_vertex_cache(path: Path, mesh: MeshLike, *, frames_per_second: float, a
     Parameters
     ----------
     mesh
-        The model, as :func:`read_mesh` gives it.
+        The model, as returned by :func:`read_mesh`.
     animation
-        Of a glTF, GLB or 3DS file: its name, where there are several.
+        Name of the animation in a glTF, GLB or 3DS file, if there are several.
 
     Raises
     ------
     Error
-        As :func:`read_mesh`; ``invalid_mesh`` when the number of vertices, or a face in a folder, is not the model's.
+        As :func:`read_mesh`; ``invalid_mesh`` if the number of vertices, or a face in a folder, differs from
+        the model's.
     """
     rate = number("frames_per_second", frames_per_second)
     name = of_kind("animation", animation, str)

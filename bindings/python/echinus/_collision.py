@@ -1,4 +1,4 @@
-"""Collision for a solver of one's own."""
+"""Collision for your own solver."""
 
 from __future__ import annotations
 
@@ -15,14 +15,14 @@ from echinus._colliders import Collider
 class ParticleCollision:
     """Keeps the particles of any solver out of models.
 
-    After each step of the solver, :meth:`correct` takes back what led a particle inside or through a model, and leaves
-    the solver all else. Between exact maps a particle that began a step outside ends it outside, however fast it or the
-    models moved. Several threads may call; one at a time computes.
+    After each step of the solver, :meth:`correct` moves particles that entered or crossed a model back out. With
+    exact maps a particle that begins a step outside ends it outside, however fast it or the models move. Several
+    threads may call; they compute one at a time.
 
     Parameters
     ----------
     colliders
-        Where they stand; their velocities do not count.
+        In their initial poses; their velocities are ignored.
     thickness
         The distance that particles keep from the surface (0 to 1e9).
     friction
@@ -35,7 +35,7 @@ class ParticleCollision:
     Raises
     ------
     Error
-        ``invalid_options``, naming what is at fault.
+        ``invalid_options``, naming the fault.
     """
 
     _collision: _core.ParticleCollision
@@ -54,23 +54,23 @@ class ParticleCollision:
         self._collision = _core.ParticleCollision(models, number("thickness", thickness), options)
 
     def set_collider_pose(self, collider: int, position: Sequence[float], rotation: Sequence[float] = (1, 0, 0, 0)) -> None:
-        """The solver's next step leads a collider there, evenly and the shorter way round; then it rests.
+        """Moves a collider to a pose during the solver's next step, rotating along the shorter arc; then it stops.
 
         Parameters
         ----------
         collider
-            Its number.
+            Its index.
         rotation
             Unit quaternion w, x, y, z.
         """
         self._collision.set_collider_pose(index("collider", collider), vector("position", position), quaternion("rotation", rotation))
 
     def place_collider(self, collider: int, position: Sequence[float], rotation: Sequence[float] = (1, 0, 0, 0)) -> None:
-        """The collider is there from now on, as after a cut in a film: nothing is swept on the way."""
+        """Places a collider at a pose at once, as after a cut in a film: nothing is swept in between."""
         self._collision.place_collider(index("collider", collider), vector("position", position), quaternion("rotation", rotation))
 
     def set_collider_friction(self, collider: int, friction: float) -> None:
-        """Of one collider, in place of the friction of all."""
+        """Sets the friction of one collider."""
         self._collision.set_collider_friction(index("collider", collider), number("friction", friction))
 
     def correct(
@@ -84,55 +84,56 @@ class ParticleCollision:
     ) -> NDArray[np.uint32]:
         """Corrects the particles after a step of the solver, in place, and moves the colliders.
 
-        A particle whose position is not finite is left as it is and meets nothing. One that does not begin where the last
-        step ended begins anew there.
+        A particle whose position is not finite is not changed and collides with nothing. For a particle that
+        does not begin where the last step ended, collision starts afresh.
 
         Parameters
         ----------
         previous_positions
-            (n, 3) Where the step began.
+            (n, 3) At the start of the step.
         positions
-            (n, 3) Where the solver has put the particles; corrected in place, so contiguous float32.
+            (n, 3) The solver's positions, corrected in place, so contiguous float32.
         velocities
             (n, 3) Corrected, too, in units per second.
         inverse_masses
             (n,) 0 for pinned particles, which nothing pushes.
         seconds
-            That the step took.
+            The duration of the step.
 
         Returns
         -------
-        The particles that were corrected, ascending.
+        The indices of corrected particles, ascending.
 
         Raises
         ------
         Error
-            ``invalid_options`` for arrays of different sizes, masses that are negative and a time that is not positive.
+            ``invalid_options`` for arrays of different sizes, negative masses and a duration that is not positive.
         """
         return self._collision.correct(previous_positions, positions, velocities, inverse_masses, number("seconds", seconds))
 
     @property
     def lost_count(self) -> int:
-        """How often a particle has ended a step inside an exact map, or behind its surface, though it was outside."""
+        """The number of times that a particle that was outside ended a step inside an exact map or behind its
+        surface."""
         return self._collision.lost_count
 
 
 class SurfaceCollision:
     """Keeps the faces that join the particles of any solver off models and off each other.
 
-    No face meets a model, nor another face, after any :meth:`correct`, within the limits of docs/limits.md. Several
-    threads may call; one at a time computes.
+    After :meth:`correct` no face intersects a model or another face, within the limits of docs/limits.md. Several
+    threads may call; they compute one at a time.
 
     Parameters
     ----------
     positions
-        (n, 3) Where the particles begin: no faces meet there, but see ``untangle``.
+        (n, 3) The initial positions, at which no faces may intersect (but see ``untangle``).
     faces
-        (m, 3) Of those particles.
+        (m, 3) The faces between the particles.
     colliders
-        Where they stand; their velocities do not count.
+        In their initial poses; their velocities are ignored.
     thickness
-        The distance to keep from colliders (0 to 1e9); never less than a fiftieth of the mean edge.
+        The distance to keep from colliders (0 to 1e9); at least a fiftieth of the mean edge length.
     friction
         Coulomb's coefficient; 0 is no friction (0 to 1e9).
     self_thickness
@@ -147,7 +148,7 @@ class SurfaceCollision:
     Raises
     ------
     Error
-        ``invalid_options``, naming what is at fault or intersects.
+        ``invalid_options``, naming the fault or the intersecting faces.
     """
 
     _collision: _core.SurfaceCollision
@@ -171,12 +172,12 @@ class SurfaceCollision:
         self._collision = _core.SurfaceCollision(start, joined, models, number("thickness", thickness), options)
 
     def set_collider_pose(self, collider: int, position: Sequence[float], rotation: Sequence[float] = (1, 0, 0, 0)) -> None:
-        """The solver's next step leads a collider there, evenly and the shorter way round; then it rests.
+        """Moves a collider to a pose during the solver's next step, rotating along the shorter arc; then it stops.
 
         Parameters
         ----------
         collider
-            Its number.
+            Its index.
         rotation
             Unit quaternion w, x, y, z.
         """
@@ -191,29 +192,29 @@ class SurfaceCollision:
     ) -> NDArray[np.uint32]:
         """Corrects the particles after a step of the solver, in place, and moves the colliders.
 
-        The step began where the last one ended.
+        The step starts from the positions at the end of the last one.
 
         Parameters
         ----------
         positions
-            (n, 3) Where the solver has put the particles; corrected in place, so contiguous float32.
+            (n, 3) The solver's positions, corrected in place, so contiguous float32.
         velocities
             (n, 3) Corrected, too, in units per second.
         seconds
-            That the step took.
+            The duration of the step.
 
         Returns
         -------
-        The particles that were corrected, ascending.
+        The indices of corrected particles, ascending.
 
         Raises
         ------
         Error
-            ``invalid_options`` for arrays of other sizes and a time that is not positive.
+            ``invalid_options`` for arrays of other sizes and a duration that is not positive.
         """
         return self._collision.correct(positions, velocities, number("seconds", seconds))
 
     @property
     def unresolved_count(self) -> int:
-        """Pairs of parts of faces for which no room was proven, summed over all steps; 0: no faces meet."""
+        """Unresolved pairs of elements, summed over all steps; if 0, no faces intersect."""
         return self._collision.unresolved_count

@@ -15,9 +15,9 @@ from echinus._tetrahedra import TetrahedralMesh
 
 
 class Deformable:
-    """Particles and what holds them together; :func:`make_cloth` and :func:`make_soft_body` make one.
+    """Particles, their constraints and materials; :func:`make_cloth` and :func:`make_soft_body` make one.
 
-    It does not change: a simulation copies it.
+    It is immutable: a simulation copies it.
     """
 
     _deformable: _core.Deformable
@@ -33,7 +33,7 @@ class Deformable:
 
     @property
     def positions(self) -> NDArray[np.float32]:
-        """(particle_count, 3) Where the particles begin; a read-only view."""
+        """(particle_count, 3) The initial positions; a read-only view."""
         return self._deformable.positions
 
     @property
@@ -53,12 +53,12 @@ class Deformable:
 
     @property
     def stick_count(self) -> int:
-        """Of the sticks that hold a cloth together."""
+        """The number of distance constraints."""
         return self._deformable.stick_count
 
     @property
     def mesh(self) -> Mesh:
-        """Its faces where they begin."""
+        """Its faces in their initial positions."""
         return Mesh(self.positions, self.faces)
 
     def __len__(self) -> int:
@@ -84,7 +84,7 @@ def make_cloth(
     rotation: Sequence[float] = (1, 0, 0, 0),
     pins: ArrayLike = (),
 ) -> Deformable:
-    """A rectangular sheet of cloth at rest: columns along x, rows along y, its middle at ``position``.
+    """Makes a rectangular sheet of cloth at rest: columns along x, rows along y, its middle at ``position``.
 
     Parameters
     ----------
@@ -122,7 +122,7 @@ def make_cloth_of_mesh(
     pins: ArrayLike = (),
     attachments: ArrayLike = (),
 ) -> Deformable:
-    """A cloth of any shape: its particles are the mesh's vertices.
+    """Makes a cloth of any shape, whose particles are the mesh's vertices.
 
     Parameters
     ----------
@@ -144,7 +144,7 @@ def make_cloth_of_mesh(
     Raises
     ------
     Error
-        ``invalid_mesh``, naming a face, edge or vertex at fault; ``invalid_options``.
+        ``invalid_mesh``, naming the face, edge or vertex; ``invalid_options``.
     """
     options = locals()
     return Deformable._of(_core.make_cloth_of_mesh(*arrays_of(mesh), options))
@@ -163,9 +163,10 @@ def make_soft_body(
     pins: ArrayLike = (),
     attachments: ArrayLike = (),
 ) -> Deformable:
-    """An organ, rubber, dough: a body at rest, whose particles are the mesh's vertices and whose faces its boundary.
+    """Makes a soft body at rest, whose particles are the mesh's vertices and whose faces are its boundary.
 
-    In metres, kilograms and seconds the numbers are SI units; docs/soft_bodies.md has the method and its limits.
+    With metres, kilograms and seconds the numbers are in SI units; docs/soft_bodies.md describes the method and
+    its limits.
 
     Parameters
     ----------
@@ -200,16 +201,16 @@ def make_soft_body(
 
 
 def combine(parts: Sequence[Deformable]) -> Deformable:
-    """Several deformables as one: with ``self_collision`` they collide with each other.
+    """Combines several deformables into one; with ``self_collision`` they collide with each other.
 
-    The particles follow one part after the other. Masses stay as they are, so they must be in one unit: see
-    :func:`with_masses_times`.
+    The particles of the parts follow one after the other. Masses do not change, so they must be in the same unit:
+    see :func:`with_masses_times`.
     """
     return Deformable._of(_core.combine([part._deformable for part in list_of_kind("parts", parts, Deformable)]))
 
 
 def with_masses_times(factor: float, deformable: Deformable) -> Deformable:
-    """The same deformable, with all masses times a factor, finite and positive.
+    """Multiplies all masses of a deformable by a finite, positive factor.
 
     A cloth's particles have the mean mass 1, so *mass of the cloth / number of its particles* brings it to the unit of
     that mass.
@@ -219,9 +220,9 @@ def with_masses_times(factor: float, deformable: Deformable) -> Deformable:
 
 
 def passing_through(collider: int, deformable: Deformable) -> Deformable:
-    """The same deformable, of which nothing collides with a collider, by its index in the simulation's.
+    """The same deformable without collision with one collider, given by its index in the simulation.
 
-    As a part of what :func:`combine` makes, it is a filter by pair: of this part and that collider.
+    After :func:`combine` this applies to the pair of this part and that collider.
     """
     core = of_kind("deformable", deformable, Deformable)._deformable
     return Deformable._of(_core.passing_through(whole("collider", collider, 0), core))

@@ -24,16 +24,17 @@ bounds.
 
 
 class Error(Exception):
-    """A refusal of the library.
+    """An error of the library.
 
-    ``str(error)`` is one sentence that names the file, face, byte or frame at fault.
+    ``str(error)`` is one sentence that names the file, face, byte or frame.
 
     Attributes
     ----------
     code : ErrorCode
-        The kind of error, for programs: ``unreadable`` and ``unwritable`` where the system refused a file;
-        ``wrong_format``, ``damaged`` and ``unsupported_version`` for what a file contains; ``invalid_mesh``,
-        ``invalid_options`` and ``invalid_scene`` for what was given; ``diverged`` for a simulation that left all bounds.
+        The kind of error, for programs: ``unreadable`` and ``unwritable`` if the system refuses a file;
+        ``wrong_format``, ``damaged`` and ``unsupported_version`` for the contents of a file;
+        ``invalid_mesh``, ``invalid_options`` and ``invalid_scene`` for arguments; ``diverged`` for a
+        simulation that left all bounds.
     """
 
     code: ErrorCode

@@ -41,8 +41,8 @@ class _Answers:
 class Contacts(_Answers):
     """One contact for each point.
 
-    A point that is outside and farther than the margin, or not finite, has no contact: depth 0, normal 0,
-    face -1, and its own place as ``point``.
+    A point that is outside beyond the margin, or not finite, has no contact: depth 0, normal 0, face -1, and its
+    own position as ``point``.
 
     Attributes
     ----------
@@ -62,23 +62,23 @@ class Contacts(_Answers):
 
     @property
     def normal(self) -> NDArray[np.float32]:
-        """(..., 3) Unit normal of the surface at ``point``, out of the solid; 0 without a contact."""
+        """(..., 3) Outward unit normal of the surface at ``point``; 0 without a contact."""
         return self._field("normal", np.float32)
 
     @property
     def point(self) -> NDArray[np.float32] | NDArray[np.float64]:
-        """(..., 3) Where the way out leads: the nearest point of the surface, or on a distance map the point
-        on the ray from its centre. In float64 for a map with an origin."""
+        """(..., 3) The target of the push-out: the nearest point of the surface, or with a distance map the
+        point on the ray from its centre. In float64 for a map with an origin."""
         return self._place()
 
     @property
     def face(self) -> NDArray[np.int32]:
-        """(...) The face of the mesh that has ``point``; -1 without a contact, and on a distance map."""
+        """(...) The face of the mesh that contains ``point``; -1 without a contact, and with a distance map."""
         return self._field("face", np.int32)
 
     @property
     def certain(self) -> NDArray[np.bool_]:
-        """(...) False where the mesh is open and its generalised winding number within 0.1 of a half."""
+        """(...) False where the mesh is open and its generalised winding number is within 0.1 of one half."""
         return self._field("certain", np.bool_)
 
     @property
@@ -94,7 +94,7 @@ class Contacts(_Answers):
 
 
 class SweepHits(_Answers):
-    """For each segment its first crossing with the surface.
+    """The first crossing of each segment with the surface.
 
     A segment that meets nothing has fraction 1, normal 0, face -1, and its end as ``point``.
 
@@ -106,7 +106,7 @@ class SweepHits(_Answers):
 
     @property
     def fraction(self) -> NDArray[np.float32]:
-        """(...) The share of the way: 0 at the start, 1 at the end."""
+        """(...) The position on the segment: 0 at the start, 1 at the end."""
         return self._field("fraction", np.float32)
 
     @property
@@ -116,7 +116,7 @@ class SweepHits(_Answers):
 
     @property
     def normal(self) -> NDArray[np.float32]:
-        """(..., 3) Unit normal of the face, out of the solid."""
+        """(..., 3) Outward unit normal of the face."""
         return self._field("normal", np.float32)
 
     @property
@@ -187,7 +187,7 @@ class DistanceMapStatistics:
 
 
 class _Map(Generic[CoreMap]):
-    """The queries of both kinds of map. A map never changes; any number of threads may query it."""
+    """The queries of both kinds of map. A map is immutable; any number of threads may query it."""
 
     _built: CoreMap
 
@@ -214,7 +214,7 @@ class _Map(Generic[CoreMap]):
     def contacts(
         self, points: ArrayLike, margin: float = 0, *, threads: int = 1, out: Contacts | None = None
     ) -> Contacts:
-        """How deep is each point, and where is the way out?
+        """Finds the contact of each point: how deep it is, and where the push-out leads.
 
         Parameters
         ----------
@@ -231,7 +231,7 @@ class _Map(Generic[CoreMap]):
         return Contacts(self._built.contacts(points, number("margin", margin), taken, threads_of(threads)), self._built.origin)
 
     def save(self, path: Path) -> None:
-        """Writes a map file, whole or not at all; :func:`load` reads it in place.
+        """Writes a map file atomically; :func:`load` reads it in place.
 
         Raises
         ------
@@ -242,29 +242,29 @@ class _Map(Generic[CoreMap]):
 
     @property
     def origin(self) -> tuple[float, float, float]:
-        """Where the float32 frame of the map begins: (0, 0, 0), unless its mesh is so far from there that float32
+        """The origin of the float32 frame of the map: (0, 0, 0), unless its mesh is so far from there that float32
         could not hold it. Points that are asked, and places in answers, are in the frame of the mesh all the same:
         give them as float64."""
         return self._built.origin
 
     @property
     def centre(self) -> tuple[float, float, float]:
-        """Where the map's rays start."""
+        """The point at which the map's rays start."""
         return self._built.centre
 
     @property
     def radius(self) -> float:
-        """Every vertex lies within it of the centre."""
+        """Every vertex lies within this distance of the centre."""
         return self._built.radius
 
     @property
     def byte_count(self) -> int:
-        """All that a query reads."""
+        """The size of all data that a query reads."""
         return self._built.byte_count
 
     @property
     def source_hash(self) -> int:
-        """Identifies the mesh and the options that the map was built from."""
+        """Identifies the mesh and the options from which the map was built."""
         return self._built.source_hash
 
     def __reduce__(self) -> tuple[Any, ...]:
@@ -349,7 +349,7 @@ class ExactMap(_Map[_core.ExactMap]):
         threads: int = 1,
         out: NDArray[np.float32] | None = None,
     ) -> Any:
-        """How far is each point from the surface? **Negative inside, positive outside**, however far.
+        """Signed distances from the surface, **negative inside and positive outside**, however far away.
 
         The sign is that of :meth:`contains`, also of a distance of 0: it is then -0 inside. For an open mesh
         :attr:`Contacts.certain` tells where it is certain. Where parts overlap, the nearest face may lie
@@ -383,7 +383,7 @@ class ExactMap(_Map[_core.ExactMap]):
         threads: int = 1,
         out: NDArray[np.float32] | None = None,
     ) -> NDArray[np.float32]:
-        """How often does the surface go around each point, counted with sign?
+        """Winding numbers: the signed number of times that the surface surrounds each point.
 
         A whole number where the surface is closed, else the generalised winding number (Jacobson et al. 2013),
         whose distance from a half says how much holes and gaps matter.
@@ -402,7 +402,7 @@ class ExactMap(_Map[_core.ExactMap]):
         return self._built.winding_number(points, number("tolerance", tolerance), out, threads_of(threads))
 
     def sweep(self, start: ArrayLike, end: ArrayLike, *, threads: int = 1) -> SweepHits:
-        """Where do segments first cross the surface?
+        """Finds the first crossings of segments with the surface.
 
         Parameters
         ----------
@@ -486,7 +486,7 @@ AnyMap = ExactMap | DistanceMap
 
 
 def load(path: Path) -> AnyMap:
-    """A map from its file, which is checked and then read in place: processes that load it share its memory.
+    """Loads a map from its file, which is checked and then read in place: processes that load it share its memory.
 
     Raises
     ------

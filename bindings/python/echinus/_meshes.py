@@ -91,7 +91,7 @@ def arrays_of(mesh: MeshLike) -> tuple[NDArray[np.float32] | NDArray[np.float64]
 
 
 def read_mesh(path: Path) -> Mesh:
-    """Reads OBJ, PLY, STL, OFF, glTF, GLB or 3DS, by the file name's extension.
+    """Reads OBJ, PLY, STL, OFF, glTF, GLB or 3DS, as the file name's extension says.
 
     All meshes of the file are joined, polygons are cut into triangles, equal positions become one vertex and
     vertices that no face uses are dropped. Nothing is repaired.
@@ -105,7 +105,7 @@ def read_mesh(path: Path) -> Mesh:
 
 
 def write_mesh(path: Path, mesh: MeshLike) -> None:
-    """Writes OBJ, PLY, STL or OFF, by the file name's extension. The file appears whole or not at all.
+    """Writes OBJ, PLY, STL or OFF, as the file name's extension says. The file is written atomically.
 
     Raises
     ------
@@ -117,7 +117,7 @@ def write_mesh(path: Path, mesh: MeshLike) -> None:
 
 @dataclass(frozen=True)
 class Fault:
-    """How often a fault occurs, and the first few faces at which it does."""
+    """The number of occurrences of a fault, and the first few faces at which it occurs."""
 
     count: int
     first_faces: tuple[int, ...]
@@ -179,13 +179,13 @@ def report_of(values: dict[str, Any]) -> MeshReport:
 
 
 def weld(mesh: MeshLike) -> Mesh:
-    """Joins vertices at equal positions and drops those that no face uses. Faces keep their order."""
+    """Joins vertices at equal positions and drops unused ones. Faces keep their order."""
     return Mesh(*_core.weld(*arrays_of(mesh)))
 
 
 @dataclass(frozen=True)
 class RepairReport:
-    """The changes that :func:`repair` made; faces by their numbers before it, and after those the ones that close holes.
+    """The changes that :func:`repair` made. Faces are given by their previous indices; faces that close holes follow.
 
     Attributes
     ----------
@@ -220,7 +220,7 @@ class RepairReport:
 
     @property
     def changed_anything(self) -> bool:
-        """Is the copy another mesh than the one that was given?"""
+        """Does the copy differ from the given mesh?"""
         dropped = (
             self.duplicate_faces_dropped
             + self.doubled_patch_faces_dropped
@@ -246,7 +246,7 @@ def repair(
     orient_faces: bool = True,
     weld_distance: float = 0,
 ) -> tuple[Mesh, RepairReport]:
-    """A copy without the faults that can be mended without a guess, and what was done. A closed mesh stays closed.
+    """A copy with the repairs that need no guess, and a report of them. A closed mesh stays closed.
 
     The last three arguments make open surfaces and assemblies solid, on request: they guess what was meant. The
     order is: seams that are welded, duplicate faces, doubled patches, slivers, orientation, seams that are filled,
@@ -294,7 +294,7 @@ def repair(
 
 
 def winding_number(mesh: MeshLike, points: ArrayLike, *, threads: int = 1) -> NDArray[np.float64]:
-    """Generalised winding numbers: 1 inside a closed mesh that looks outwards, 0 outside.
+    """Generalised winding numbers: 1 inside a closed mesh with outward faces, 0 outside.
 
     By brute force over all faces, in double precision: a judge for maps, not a query. NaN for a point that is
     not finite.
@@ -313,7 +313,7 @@ def winding_number(mesh: MeshLike, points: ArrayLike, *, threads: int = 1) -> ND
 
 
 def unsigned_distance(mesh: MeshLike, points: ArrayLike, *, threads: int = 1) -> NDArray[np.float64]:
-    """Distances to the nearest point of the surface, by brute force in double precision: a judge for maps.
+    """Distances to the nearest point of the surface, by brute force in double precision: a reference for maps.
 
     Infinite for a point that is not finite. Parameters and shapes as for :func:`winding_number`.
     """
@@ -321,7 +321,7 @@ def unsigned_distance(mesh: MeshLike, points: ArrayLike, *, threads: int = 1) ->
 
 
 def intersecting_pairs(a: MeshLike, b: MeshLike) -> NDArray[np.uint32]:
-    """Which faces of ``a`` intersect which of ``b``; touching counts. Decided exactly.
+    """The intersecting faces of ``a`` and ``b``, by exact tests; touching counts.
 
     Returns
     -------
@@ -332,7 +332,7 @@ def intersecting_pairs(a: MeshLike, b: MeshLike) -> NDArray[np.uint32]:
 
 
 def self_intersecting_pairs(mesh: MeshLike) -> NDArray[np.uint32]:
-    """Which faces of a mesh intersect beyond the corners and edges that they share. Decided exactly.
+    """The faces of a mesh that intersect other than in shared corners and edges, by exact tests.
 
     Returns
     -------
@@ -366,5 +366,5 @@ def make_sphere(radius: float = 1, meridian_count: int = 60, parallel_count: int
 
 
 def make_box(size: tuple[float, float, float] = (1, 1, 1), segments: int = 1) -> Mesh:
-    """A box around the origin; each side is cut into ``segments`` x ``segments`` squares."""
+    """A box around the origin, with each side divided into ``segments`` x ``segments`` squares."""
     return Mesh(*_core.make_box(vector("size", size), whole("segments", segments)))

@@ -192,7 +192,7 @@ class Simulation:
     Raises
     ------
     Error
-        ``invalid_options``, naming what is at fault.
+        ``invalid_options``, naming the fault.
     """
 
     _simulation: _core.Simulation
@@ -265,30 +265,30 @@ class Simulation:
         Parameters
         ----------
         scene
-            The path of a JSON file, or its content; docs/scenes.md has every key.
+            The path of a JSON file, or its content; docs/scenes.md documents every key.
         model
             A mesh, which the scene may repair, or a map in place of the scene's model. For a scene with several
             colliders a list with one for each, None where the scene's own is meant. A collider with a vertex cache
             takes a mesh only.
         cloth, rest_cloth
-            Meshes in place of the files that the scene's cloth is made of.
+            Meshes in place of the files of the scene's cloth.
         model_folders
-            A folder, or several, where the scene's files are looked for first; then beside the scene, in ``../models`` beside it,
-            and in ``models`` in the working folder.
+            A folder, or several, in which the scene's files are looked up first; then the scene's folder,
+            its ``../models``, and ``models`` in the working folder.
         surface_collision, self_collision, untangle
-            In place of the scene's keys. Without the first there is none of the others. A distance map as ``model``
-            has no surface collision.
+            In place of the scene's keys. The last two need the first. A distance map as ``model`` has no
+            surface collision.
         allow_open_colliders
-            Accept a model that is not closed, for which nothing is promised. Surface collision needs no such
-            permission.
+            Accept a model that is not closed, for which nothing is guaranteed. Surface collision does not
+            need this option.
         threads
-            For the build of maps. 0: all cores.
+            Threads that build maps; 0: all cores.
 
         Raises
         ------
         Error
-            ``invalid_scene`` names the key at fault; ``unreadable``, ``invalid_mesh`` and ``invalid_options``
-            name the file and what is wrong with it.
+            ``invalid_scene`` names the key; ``unreadable``, ``invalid_mesh`` and ``invalid_options`` name
+            the file and its fault.
         """
         if isinstance(scene, Mapping):
             parsed = _core.Scene.parse(json_of(scene), "the scene")
@@ -335,12 +335,12 @@ class Simulation:
         self._simulation.step(whole("frame_count", frame_count))
 
     def run(self, frame_limit: int | None = None) -> bool:
-        """Steps until all rests or there are so many frames, by default the scene's limit.
+        """Steps until the simulation is at rest or reaches the frame limit, by default that of the scene.
 
         Returns
         -------
         bool
-            Does it rest?
+            Whether it is at rest.
         """
         limit = self._frame_limit if frame_limit is None else whole("frame_limit", frame_limit)
         while not self.at_rest and self.frame < limit:
@@ -354,7 +354,7 @@ class Simulation:
 
     @property
     def previous_positions(self) -> NDArray[np.float32]:
-        """(particle_count, 3) Where particles at their present velocities were one frame before."""
+        """(particle_count, 3) The positions of particles one frame ago at their present velocities."""
         return self._simulation.previous_positions
 
     @property
@@ -380,12 +380,12 @@ class Simulation:
 
     @property
     def colliders(self) -> list[ColliderState]:
-        """The models where they are now."""
+        """The models in their present poses."""
         return [ColliderState(**state) for state in self._simulation.describe_colliders()]
 
     @property
     def options(self) -> SimulationOptions:
-        """As given, with the thickness in force."""
+        """The given options, with the effective thickness."""
         return SimulationOptions(**self._simulation.options)
 
     @property
@@ -400,25 +400,25 @@ class Simulation:
 
     @property
     def at_rest(self) -> bool:
-        """Has every particle been slow and near one place for as many frames as the scene says?"""
+        """Has every particle been slow and near one position for the required number of frames?"""
         return self._simulation.at_rest
 
     @property
     def largest_speed(self) -> float:
-        """Of the fastest particle, units per second; infinite before the first frame."""
+        """Speed of the fastest particle, units per second; infinite before the first frame."""
         return self._simulation.largest_speed
 
     @property
     def residual(self) -> tuple[float, float]:
-        """How far structural sticks are from their length at rest, as a share of it; root mean square and largest.
+        """The relative deviation of structural constraints from their rest lengths; root mean square and largest.
 
-        Under ``jakobsen`` it is what relaxations have left undone.
+        With ``jakobsen`` it is the residual error of the relaxations.
         """
         return self._simulation.residual()
 
     @property
     def state_hash(self) -> int:
-        """Of the bits of all positions: to compare two runs."""
+        """A hash of the bits of all positions, to compare two runs."""
         return self._simulation.state_hash
 
     @property
@@ -427,7 +427,7 @@ class Simulation:
         return SimulationProfile(**self._simulation.profile)
 
     def set_collider_velocity(self, collider: int, linear: Sequence[float], angular: Sequence[float]) -> None:
-        """Steers a model: it keeps these velocities, in units and radians per second, until they are set again."""
+        """Sets the velocities of a model, in units and radians per second, which it keeps until they are set again."""
         self._simulation.set_collider_velocity(
             index("collider", collider), vector("linear", linear), vector("angular", angular)
         )
@@ -435,7 +435,7 @@ class Simulation:
     def set_collider_pose(
         self, collider: int, position: Sequence[float], rotation: Sequence[float] = (1, 0, 0, 0)
     ) -> None:
-        """The next frame leads a model to this pose, evenly and the shorter way round, and leaves it there.
+        """Moves a model to this pose during the next frame, rotating along the shorter arc; it then stays there.
 
         Parameters
         ----------
@@ -447,9 +447,9 @@ class Simulation:
         )
 
     def set_collider_keyframes(self, collider: int, keys: Sequence[PoseKey]) -> None:
-        """A model follows the keys: each frame leads it to where :func:`pose_at` has it at the frame's end.
+        """Makes a model follow keyframes: each frame moves it to the pose of :func:`pose_at` at the frame's end.
 
-        It does so from where it is, so begin it at ``pose_at`` of the present. No keys: it stands still.
+        It starts from its present pose, so place it at the present ``pose_at`` first. Without keys it does not move.
 
         Parameters
         ----------
@@ -459,14 +459,14 @@ class Simulation:
         self._simulation.set_collider_keyframes(index("collider", collider), key_arguments(keys))
 
     def set_collider_vertices(self, collider: int, vertices: ArrayLike) -> None:
-        """The next frame leads the vertices of a model here, each on a straight way; then they rest.
+        """Moves the vertices of a model to these positions during the next frame, along straight lines.
 
-        Needs an exact map and surface collision; the map is built anew in this call.
+        This needs an exact map and surface collision; the map is rebuilt in this call.
 
         Parameters
         ----------
         vertices : array_like (vertex_count, 3)
-            In the model's own frame, as many and in the same order as those of the mesh that its map was built of.
+            In the model's own frame, in the number and order of the mesh from which its map was built.
 
         Raises
         ------
@@ -476,19 +476,20 @@ class Simulation:
         self._simulation.set_collider_vertices(index("collider", collider), _core.float_array(vertices))
 
     def set_collider_cache(self, collider: int, cache: VertexCache) -> None:
-        """Each frame leads the vertices of a model to where the cache has them at the frame's end.
+        """Each frame moves the vertices of a model to those of the cache at the frame's end.
 
-        Build its map of ``cache.at(0)``, or the first frame leads it there. Needs what :meth:`set_collider_vertices`
-        does.
+        Build its map from ``cache.at(0)``; otherwise the first frame moves it there. The requirements are
+        those of :meth:`set_collider_vertices`.
         """
         core = of_kind("cache", cache, VertexCache)._cache
         self._simulation.set_collider_cache(index("collider", collider), core)
 
     def load_on(self, collider: int) -> Load:
-        """The load that the deformables put on a model in the last frame, as its mean over the frame; 0 before the first.
+        """The load that the deformables exerted on a model in the last frame, averaged over the frame; 0
+        before the first.
 
-        By contact and friction, in N and N m; always 0 under ``jakobsen``. A host that moves a rigid body by it, and
-        then the model by the body, exchanges momentum with the deformables.
+        It is due to contact and friction, in N and N m, and always 0 with ``jakobsen``. A program that
+        applies it to a rigid body and moves the model with the body exchanges momentum with the deformables.
         """
         return Load(*self._simulation.load_on(index("collider", collider)))
 
@@ -505,7 +506,8 @@ class Simulation:
         self._simulation.set_collider_free(index("collider", collider), number("mass", mass))
 
     def record_contacts(self, is_on: bool = True) -> None:
-        """Whether the frames that follow record the contacts that push. Off at the beginning; not part of a state."""
+        """Sets whether the following frames record the contacts that push; off by default. It is not part of
+        a state."""
         self._simulation.record_contacts(flag("is_on", is_on))
 
     def contact_points(self) -> ContactPoints:
@@ -517,35 +519,35 @@ class Simulation:
         return ContactPoints(*self._simulation.contact_points())
 
     def set_particle_velocity(self, particle: int, velocity: Sequence[float]) -> None:
-        """Gives a particle a velocity, units per second. A pinned particle stays."""
+        """Sets the velocity of a particle, in units per second. A pinned particle does not move."""
         self._simulation.set_particle_velocity(index("particle", particle), vector("velocity", velocity))
 
     def blow(self, wind: Sequence[float], rate: float) -> None:
-        """Wind for the next frame.
+        """Sets the wind for the next frame.
 
         Parameters
         ----------
         wind
             Velocity of the air, units per second.
         rate
-            Per second, not negative: the higher, the lighter the cloth.
+            Per second, not negative; higher for lighter cloth.
         """
         self._simulation.blow(vector("wind", wind), number("rate", rate))
 
     def save_state(self) -> bytes:
-        """All that decides how the simulation goes on, but for what it was made of (docs/saved_states.md)."""
+        """Returns the state of the simulation without its inputs (docs/saved_states.md)."""
         return self._simulation.save_state()
 
     def restored(self, state: bytes) -> Simulation:
-        """Another simulation, made of the same as this one, that goes on from a saved state with the same bits.
+        """Makes another simulation with the same inputs that resumes from a saved state bit for bit.
 
-        This one stays as it is, and so do views of its positions.
+        This simulation does not change, and neither do views of its positions.
 
         Raises
         ------
         Error
-            ``wrong_format``, ``unsupported_version`` or ``damaged`` for bytes that are no state of this version;
-            ``invalid_options`` for one of another simulation, saying what differs.
+            ``wrong_format``, ``unsupported_version`` or ``damaged`` for bytes that are not a state of
+            this version; ``invalid_options`` for a state of another simulation, naming the difference.
         """
         return self._of(self._simulation.restored(of_kind("state", state, bytes)), self._frame_limit)
 

@@ -1,4 +1,4 @@
-"""Bodies of tetrahedra: files, filling a closed surface, reports, and finer meshes that go along."""
+"""Tetrahedral meshes: files, filling a closed surface, reports, and embedded meshes."""
 
 from __future__ import annotations
 
@@ -15,14 +15,14 @@ from echinus._meshes import Mesh, MeshReport, Path, read_only, report_of
 
 
 class TetrahedralMesh:
-    """A body cut into tetrahedra that share vertices.
+    """A body divided into tetrahedra that share vertices.
 
     Parameters
     ----------
     vertices : array_like (n, 3)
-        Positions, rounded to float32 where that can hold the shape, as those of :class:`Mesh`.
+        Positions, rounded to float32 if that can represent the shape, like those of :class:`Mesh`.
     tetrahedra : array_like (m, 4)
-        Whole numbers: the vertices a, b, c, d of each, such that a, b, c turn counter-clockwise seen from d.
+        Integers: the vertices a, b, c, d of each tetrahedron, where a, b, c are counter-clockwise seen from d.
 
     Attributes
     ----------
@@ -51,16 +51,16 @@ class TetrahedralMesh:
 
 @dataclass(frozen=True)
 class TetrahedraFile:
-    """A body from a file, and what was changed for it to be valid.
+    """A body from a file, and the changes that made it valid.
 
     Attributes
     ----------
     mesh
         Valid; every vertex is used.
     turned_tetrahedra
-        Those that were negative and had two corners exchanged: the order is a file's convention.
+        Negative tetrahedra that had two corners exchanged: the order is a convention of the file.
     dropped_vertices
-        Those that no tetrahedron uses.
+        Vertices that no tetrahedron uses.
     """
 
     mesh: TetrahedralMesh
@@ -71,8 +71,8 @@ class TetrahedraFile:
 def read_tetrahedra(path: Path) -> TetrahedraFile:
     """Reads ``.msh`` (Gmsh 2.2 and 4.1), ``.vtk`` (legacy, an unstructured grid) or TetGen's ``.node`` with ``.ele``.
 
-    Either path names TetGen's pair. Points, lines and plane cells are ignored, as are data; other cells than
-    tetrahedra of four corners are refused. Positions are not welded.
+    Either path names TetGen's pair. Points, lines, planar cells and data are ignored; volume cells other than
+    four-node tetrahedra are refused. Positions are not welded.
 
     Raises
     ------
@@ -84,7 +84,7 @@ def read_tetrahedra(path: Path) -> TetrahedraFile:
 
 
 def write_tetrahedra(path: Path, mesh: TetrahedralMesh) -> None:
-    """Writes ``.msh`` (Gmsh 2.2) or ``.vtk``, by the file name's extension. The file appears whole or not at all.
+    """Writes ``.msh`` (Gmsh 2.2) or ``.vtk``, as the file name's extension says. The file is written atomically.
 
     Raises
     ------
@@ -97,7 +97,7 @@ def write_tetrahedra(path: Path, mesh: TetrahedralMesh) -> None:
 def make_solid_box(
     size: tuple[float, float, float] = (1, 1, 1), segments: tuple[int, int, int] = (1, 1, 1)
 ) -> TetrahedralMesh:
-    """A box around the origin, of cuboids cut into five tetrahedra each.
+    """Makes a box around the origin, of cuboids that are divided into five tetrahedra each.
 
     Vertex (i, j, k), counted along x, y and z, has the index
     ``(k * (segments[1] + 1) + j) * (segments[0] + 1) + i``.
@@ -124,7 +124,7 @@ class Tetrahedralization:
     size
         Of the lattice.
     removed_tetrahedra
-        Left out where parts of the body would have met in no more than an edge or a vertex.
+        Tetrahedra left out because parts of the body would have met in only an edge or a vertex.
     """
 
     mesh: TetrahedralMesh
@@ -140,16 +140,16 @@ def tetrahedralize(
     most_tetrahedra: int = 10_000_000,
     threads: int = 0,
 ) -> Tetrahedralization:
-    """Fills what an exact map says is inside with tetrahedra, by isosurface stuffing (Labelle and Shewchuk 2007).
+    """Fills the inside of an exact map with tetrahedra, by isosurface stuffing (Labelle and Shewchuk 2007).
 
-    The boundary is closed, manifold, and does not intersect itself; the extreme dihedral angles that were found are
-    9.3 and 161.7 degrees. A part thinner than ``size`` is lost or torn. docs/tetrahedra.md has the method and what
-    it promises.
+    The boundary is closed, manifold, and does not intersect itself; the extreme dihedral angles are 9.3 and 161.7
+    degrees. A part thinner than ``size`` is lost or torn. docs/tetrahedra.md describes the method and its
+    guarantees.
 
     Parameters
     ----------
     model
-        The map of a closed surface; of an open one, inside is where the winding number says so.
+        The map of a surface; for an open one the winding number decides what is inside.
     size
         The edge of the lattice's cubes, in the model's unit. Either this or ``count``; 0: the other (not negative).
     count
@@ -175,20 +175,20 @@ def tetrahedralize(
 
 
 def require_valid_tetrahedra(mesh: TetrahedralMesh) -> None:
-    """Raises an error unless every tetrahedron is positive, and two that share a face lie on either side of it.
+    """Raises an error unless all tetrahedra are positive, and two with a common face lie on opposite sides of it.
 
-    Vertices that no tetrahedron uses may be anything. Signs are exact.
+    Unused vertices may have any values. Signs are exact.
 
     Raises
     ------
     Error
-        ``invalid_mesh``, naming the first tetrahedron or vertex at fault.
+        ``invalid_mesh``, naming the first invalid tetrahedron or vertex.
     """
     _core.require_valid_tetrahedra(*_arrays_of(mesh))
 
 
 def boundary(mesh: TetrahedralMesh) -> Mesh:
-    """The faces that belong to one tetrahedron only, outward; with all vertices of the body, also the inner ones.
+    """The faces that belong to only one tetrahedron, outward, with all vertices of the body, including interior ones.
 
     Raises
     ------
@@ -207,7 +207,7 @@ class TetrahedralReport:
     vertex_count
         Vertices that tetrahedra use.
     volume, least_volume
-        Of all, and of the smallest tetrahedron.
+        Of all tetrahedra, and of the smallest.
     least_angle_deg, greatest_angle_deg
         Between two faces of a tetrahedron.
     boundary
@@ -240,7 +240,7 @@ def inspect_tetrahedra(mesh: TetrahedralMesh) -> TetrahedralReport:
 
 @dataclass(frozen=True)
 class BoundaryDistance:
-    """How far the boundary of a body and the surface of a model are apart, at samples on both."""
+    """The distances between the boundary of a body and the surface of a model, at samples on both."""
 
     mean_to_model: float
     greatest_to_model: float
@@ -255,7 +255,7 @@ def measure_distance(mesh: TetrahedralMesh, model: ExactMap, *, threads: int = 0
 
 
 class Embedding:
-    """Where points lie in a body, so that they go along with its vertices; :func:`embed` makes one."""
+    """The positions of points in a body, so that they can follow its vertices; :func:`embed` makes one."""
 
     _embedding: _core.Embedding
 
@@ -265,12 +265,12 @@ class Embedding:
     def carry(
         self, positions: ArrayLike, *, out: NDArray[np.float32] | None = None, threads: int = 1
     ) -> NDArray[np.float32]:
-        """Where the points are once the body's vertices have moved.
+        """Computes the positions of the points after the body's vertices have moved.
 
         Parameters
         ----------
         positions : array_like (vertex_count, 3)
-            Of the body's vertices; those of a simulation that has other particles too are a slice of its positions.
+            Positions of the body's vertices; in a simulation with other particles they are a slice of its positions.
         out : ndarray (n, 3) of float32, optional
             Takes the answers.
 
@@ -287,7 +287,7 @@ class Embedding:
 
     @property
     def weights(self) -> NDArray[np.float32]:
-        """(n, 4) The weights of these corners, whose sum is 1; outside of the tetrahedron some are negative."""
+        """(n, 4) The weights of these corners, whose sum is 1; outside the tetrahedron some are negative."""
         return self._embedding.weights
 
     def __len__(self) -> int:
@@ -298,7 +298,7 @@ class Embedding:
 
 
 def embed(mesh: TetrahedralMesh, points: ArrayLike, *, threads: int = 0) -> Embedding:
-    """Finds the tetrahedron that each point lies in, or else the nearest one, and the point's weights there.
+    """Finds the tetrahedron that contains each point, or else the nearest one, and the point's weights there.
 
     Parameters
     ----------
