@@ -13,7 +13,7 @@
 
 export type Vec3 = readonly [number, number, number] | Float32Array | Float64Array | readonly number[];
 
-/** `code` is for programs, `message`, one sentence, for people. */
+/** `code` is for programs; `message` is one sentence for people. */
 export class EchinusError extends Error {
     readonly name: 'EchinusError';
     readonly code: ErrorCode;
@@ -32,7 +32,7 @@ export type ErrorCode =
     | 'Deleted'
     /** The host lacks what missingFeatures() names. */
     | 'Unsupported'
-    /** The module has stopped through an internal fault. Every further call throws this: load() it again. */
+    /** The module has crashed through a bug. Every further call throws this: load() it again. */
     | 'Crashed'
     | 'Internal';
 
@@ -86,8 +86,8 @@ export class Echinus {
      */
     makeMeshFromPolygons(vertices: ArrayLike<number>, corners: ArrayLike<number>, cornerCounts: ArrayLike<number>): Mesh;
     /**
-     * Reads an OBJ, PLY, STL or OFF file by the extension of its name, text or binary; vertices at equal positions are
-     * welded. For glTF, GLB and 3DS use another reader, makeMesh() and weld().
+     * Reads an OBJ, PLY, STL or OFF file, text or binary, as the extension of its name says; vertices at
+     * equal positions are welded. For glTF, GLB and 3DS use another reader, makeMesh() and weld().
      * @throws WrongFormat, Damaged or InvalidMesh; the sentence begins with the name, and names the line or byte
      */
     readMesh(bytes: ArrayBuffer | ArrayBufferView, name: string): Mesh;
@@ -105,7 +105,7 @@ export class Echinus {
     buildMap(mesh: Mesh, options?: MapOptions | string): AnyMap;
     /**
      * From the bytes of a map file, which are copied and checked.
-     * @param name  begins the sentences of errors
+     * @param name  with which error messages begin
      * @throws WrongFormat, UnsupportedVersion, Damaged
      */
     loadMap(bytes: ArrayBuffer | ArrayBufferView, name?: string): AnyMap;
@@ -118,7 +118,7 @@ export class Echinus {
 
     /**
      * @param scene  as in docs/scenes.md, as an object or as a JSON text, which may have comments
-     * @throws InvalidScene: names the key at fault, and the most similar one that exists
+     * @throws InvalidScene, which names the key and the most similar known key
      */
     parseScene(scene: SceneDescription | string, name?: string): Scene;
 }
@@ -126,7 +126,7 @@ export class Echinus {
 // ---- Buffers
 
 /**
- * Module memory that both sides read and write.
+ * Memory of the module that both sides read and write.
  *
  * A view lasts until memory grows, which any call into the module may cause; then the old array is empty, and the
  * getter gives a new one. So keep the buffer and get `.view` at each use: that costs a comparison.
@@ -161,7 +161,7 @@ export class ContactBuffer extends Deletable {
     readonly ints: Int32Array;
     /** [36 length] Of contact i: inside at 36i + 32, certain at 36i + 33, feature at 36i + 34. */
     readonly bytes: Uint8Array;
-    /** A copy of one. */
+    /** A copy of one contact. */
     at(index: number): Contact;
 }
 
@@ -186,24 +186,24 @@ export class Mesh extends Deletable {
     readonly faceCount: number;
     /** [3 vertexCount] a copy, relative to the origin. */
     readonly vertices: Float32Array;
-    /** Where the frame of the vertices begins in that of the file: [0, 0, 0], unless floats could not hold the mesh there. */
+    /** The origin of the vertices' frame in the frame of the file: [0, 0, 0], unless floats could not represent the mesh there. */
     readonly origin: [number, number, number];
     /** [3 faceCount] a copy. */
     readonly faces: Uint32Array;
 
     report(): MeshReport;
-    /** Every fault and its place, for drawing. */
+    /** Every fault and its location, for drawing. */
     faults(): MeshFaults;
     /** Joins vertices at equal positions and drops unused ones; faces keep their order. */
     weld(): Mesh;
     /** A repaired copy. @param repairs  by default all */
     repair(repairs?: readonly Repair[]): { mesh: Mesh; report: RepairReport };
     /**
-     * Which faces intersect, decided exactly (echinus/intersections.hpp): pairs of a face of this mesh and a face of
-     * the other, both in one frame, ascending. @returns [2 pair_count]
+     * The intersecting faces, by exact tests (echinus/intersections.hpp): pairs of a face of this mesh and
+     * a face of the other, both in the same frame, ascending. @returns [2 pair_count]
      */
     intersectingPairs(other: Mesh): Uint32Array;
-    /** Pairs of faces of this mesh that intersect beyond what they share, ascending. @returns [2 pair_count] */
+    /** Pairs of faces of this mesh that intersect other than in shared vertices and edges, ascending. @returns [2 pair_count] */
     selfIntersectingPairs(): Uint32Array;
     /** By brute force over all faces, as a reference: 1 inside a closed mesh, 0 outside. */
     windingNumber(point: Vec3): number;
@@ -223,20 +223,20 @@ export interface MeshReport {
     faceCount: number;
     vertexCount: number;
     componentCount: number;
-    /** Every edge is balanced: equally many faces run along it in each direction. */
+    /** Every edge is balanced: the same number of faces traverse it in either direction. */
     closed: boolean;
     manifold: boolean;
-    /** Faces can be turned so that neighbours agree about the outside; a Moebius strip's cannot. */
+    /** Faces can be flipped so that neighbours agree about the outside; those of a Moebius strip cannot. */
     orientable: boolean;
     borderEdges: Fault;
     nonmanifoldEdges: Fault;
     misorientedEdges: Fault;
     duplicateFaces: Fault;
     degenerateFaces: Fault;
-    /** Positive where faces turn outwards. */
+    /** Positive if faces point outwards. */
     signedVolume: number;
     boundingSphere: { centre: [number, number, number]; radius: number };
-    /** The step of floats, where all coordinates are floats and these are too coarse there; else 0. */
+    /** The spacing of floats, if all coordinates are floats and these are too coarse there; otherwise 0. */
     roundingStep: number;
 }
 export interface MeshFaults {
@@ -260,11 +260,11 @@ export interface RepairReport {
     facesAdded: number;
     verticesWelded: number;
     sliversDropped: number;
-    /** So that neighbours agree. */
+    /** Faces flipped so that neighbours agree. */
     facesTurned: number;
-    /** Holes without width. */
+    /** Filled holes of zero width. */
     seamsFilled: number;
-    /** The numbers of all dropped faces, ascending; those that closed a hole have the numbers after the mesh's. */
+    /** The indices of all dropped faces, ascending; faces that closed a hole have indices after those of the mesh. */
     droppedFaces: Uint32Array;
 }
 
@@ -327,12 +327,12 @@ export interface DistanceMapOptions {
 export type MapOptions = ExactMapOptions | DistanceMapOptions;
 export type AnyMap = ExactMap | DistanceMap;
 
-/** Points are in the frame of the mesh, relative to its origin. NaN or infinity in a point: outside, no contact. */
+/** Points are in the frame of the mesh, relative to its origin. A point with NaN or infinity is outside and has no contact. */
 declare abstract class MapOfEitherKind extends Deletable {
-    /** All that a query reads. */
+    /** The size of all data that a query reads. */
     readonly byteCount: number;
     readonly centre: [number, number, number];
-    /** Of the mesh: subtract it from points of the file's frame, as numbers, before they become floats. */
+    /** The origin of the mesh: subtract it from points of the file's frame, as numbers, before they become floats. */
     readonly origin: [number, number, number];
     /** Every vertex lies within it of the centre. */
     readonly radius: number;
@@ -353,7 +353,7 @@ declare abstract class MapOfEitherKind extends Deletable {
     save(): Uint8Array;
 }
 
-/** A stretch of a ray from the centre, in distances from it; the last ends at the bounding sphere. */
+/** A segment of a ray from the centre, in distances from it; the last ends at the bounding sphere. */
 export interface RayInterval {
     from: number;
     to: number;
@@ -364,7 +364,7 @@ export interface RayInterval {
 export class ExactMap extends MapOfEitherKind {
     readonly kind: 'exact';
     readonly description: ExactMapDescription;
-    /** contains() with a mark: `certain` is false where an open mesh leaves the answer to the winding number. */
+    /** contains(), and whether the answer is certain: `certain` is false where the mesh is open and the winding number is near one half. */
     classify(point: Vec3): { inside: boolean; certain: boolean };
     /** The first crossing of the line segment between two points with the surface. */
     sweep(from: Vec3, to: Vec3): SweepHit;
@@ -387,7 +387,7 @@ export class DistanceMap extends MapOfEitherKind {
 }
 
 export interface SweepHit {
-    /** Along the segment: 0 at its start, 1 at its end or when there is no crossing. */
+    /** Position on the segment: 0 at its start, 1 at its end or without a crossing. */
     fraction: number;
     point: [number, number, number];
     normal: [number, number, number];
@@ -409,9 +409,9 @@ export interface ExactRay {
 export interface DistanceRay {
     /** The samples around the ray, by their index; an octahedral map's fourth is one of the other three. */
     samples: number[];
-    /** How many entries each has. */
+    /** The number of entries of each. */
     sampleEntryCounts: number[];
-    /** True for those with as many entries as the nearest; the others are ignored. */
+    /** True for those with the same number of entries as the nearest; the others are ignored. */
     samplesUsed: boolean[];
     /** The interpolated entries. */
     crossings: number[];
@@ -453,7 +453,7 @@ export interface DistanceMapDescription extends MapDescription {
     centreInside: boolean;
     directionCount: number;
     entryCount: number;
-    /** How many directions have 0, 1, 2 ... entries. */
+    /** The numbers of directions with 0, 1, 2 ... entries. */
     entryHistogram: number[];
     maxEntries: number;
     correctedEntries: number;
@@ -463,7 +463,7 @@ export interface DistanceMapDescription extends MapDescription {
 
 // ---- Collision in another engine
 
-/** Where a model stands: point_world = rotation applied to (scale * point_local), + position. */
+/** The pose of a model: point_world = rotation applied to (scale * point_local), + position. */
 export interface PlacedMap {
     map: AnyMap;
     position?: Vec3;
@@ -473,7 +473,7 @@ export interface PlacedMap {
 }
 
 export interface CollisionOptions {
-    /** [3 particle_count] where the particles begin; outside the models. */
+    /** [3 particle_count] The initial positions, outside the models. */
     positions: ArrayLike<number>;
     colliders: readonly PlacedMap[];
     /** The distance that particles keep from the models, units. */
@@ -482,42 +482,45 @@ export interface CollisionOptions {
     friction?: number;
     /** [3 face_count] particles of each face, which `surfaces` needs. */
     faces?: ArrayLike<number>;
-    /** No face meets a model, not only no particle (docs/surfaces.md). Needs exact maps. Default: false. */
+    /** Keep faces off models, not only particles (docs/surfaces.md). Needs exact maps. Default: false. */
     surfaces?: boolean;
-    /** With `surfaces`: nor do the faces meet each other. Default: false. */
+    /** With `surfaces`: keep faces off each other, too. Default: false. */
     selfCollision?: boolean;
-    /** Accept the exact map of an open mesh, near whose gaps particles get in and out. Default: false. */
+    /** Accept the exact map of an open mesh, near whose holes particles get in and out. Default: false. */
     allowOpenColliders?: boolean;
-    /** With `surfaces`: part faces that intersect at the start, where that can be done; otherwise they are refused. Default: false. */
+    /** With `surfaces`: separate faces that intersect at the start, if possible, instead of refusing them. Default: false. */
     untangle?: boolean;
 }
 
 /**
- * Keeps particles that another solver moves out of models: of each of its steps what led a particle inside, or through a
- * model, is taken back. A particle that began outside of exact maps is outside after every correct(), however fast it or
- * the model moved; the limits are those of ParticleCollision and, with `surfaces`, SurfaceCollision (docs/own_solver.md).
+ * Keeps particles that another solver moves out of models: after each of its steps, particles that entered
+ * or crossed a model are moved back out. A particle that began outside is outside after every correct()
+ * with exact maps, however fast it or the model moved; the limits are those of ParticleCollision and, with
+ * `surfaces`, SurfaceCollision (docs/own_solver.md).
  *
- * After each step of the solver: write where it put the particles into `positions`, call correct(), and give the solver
- * the positions and velocities of the particles in `corrected`. The views last as those of a buffer.
+ * After each step of the solver, write its positions into `positions`, call correct(), and pass the
+ * positions and velocities of the particles in `corrected` back to the solver. The views last as those of
+ * a buffer.
  */
 export class Collision extends Deletable {
     readonly particleCount: number;
     readonly colliderCount: number;
-    /** [3 particleCount] world units. A particle whose place is not finite, or farther than 1e12 units from 0, is left so, and goes on from where it was. */
+    /** [3 particleCount] world units. A particle whose position is not finite, or farther than 1e12 units from 0, is not changed, and continues from its previous position. */
     readonly positions: Float32Array;
     /** [3 particleCount] units per second, of the particles in `corrected`. */
     readonly velocities: Float32Array;
     /** The particles that the last correct() moved, ascending. */
     readonly corrected: Uint32Array;
-    /** With `surfaces`: pairs of parts of faces for which no room was proven. Only then may faces intersect: 0. */
+    /** With `surfaces`: unresolved pairs of elements, for which no free space was proven. If 0, no faces intersect. */
     readonly squeezedCount: number;
 
     /**
-     * Where the solver's next step leads a collider, evenly and the shorter way round; then it rests.
+     * Moves a collider to a pose during the solver's next step, rotating along the shorter arc; then it
+     * stops.
      * @param rotation  a unit quaternion w, x, y, z
      */
     setColliderPose(collider: number, position: Vec3, rotation?: readonly number[]): void;
-    /** @param seconds  that the solver's step took  @returns how many particles were moved */
+    /** @param seconds  the duration of the solver's step  @returns the number of corrected particles */
     correct(seconds: number): number;
 }
 
@@ -564,7 +567,7 @@ export interface SceneDescription {
         ignores?: readonly number[];
     };
     bodies?: readonly Body[];
-    /** Cuts: in the frame of that time these colliders and, unless told otherwise, what deforms are elsewhere. */
+    /** Cuts: in the frame at this time these colliders and, by default, the deformable are teleported. */
     teleports?: readonly {
         time: number;
         displacement?: Vec3;
@@ -692,7 +695,7 @@ export interface SceneDescription {
     };
 }
 
-/** Where a model stands, and how it moves: degrees per second. */
+/** The pose and motion of a model, in degrees per second. */
 export interface Placement {
     position?: Vec3;
     rotation?: { axis: Vec3; degrees: number };
@@ -705,14 +708,14 @@ export interface Placement {
     keyframes?: readonly Keyframe[];
 }
 
-/** Where something is at a time in seconds. */
+/** A keyframe: a pose at a time in seconds. */
 export interface Keyframe {
     time: number;
     position?: Vec3;
     rotation?: { axis: Vec3; degrees: number };
 }
 
-/** A path, without which it stands still, and when it lets go, seconds. */
+/** A path, without which the handle does not move, and the release time in seconds. */
 export interface Handle {
     keyframes?: readonly Keyframe[];
     release?: number;
@@ -756,7 +759,7 @@ export interface Sheet {
     // End of options.
     /** [column, row] of fixed particles. */
     pins?: readonly (readonly [number, number])[];
-    /** Of particles that move with a collider, the first unless it is named. */
+    /** Particles that move with a collider, by default the first. */
     attachments?: readonly (readonly [number, number])[] | readonly { collider: number; particles: readonly (readonly [number, number])[] }[];
     handles?: readonly (Handle & { particles: readonly (readonly [number, number])[] })[];
 }
@@ -767,7 +770,7 @@ export interface Attachments {
     vertices: VertexChoice;
 }
 
-/** Vertices by their numbers, or all in a box. */
+/** Vertices by index, or all vertices in a box. */
 export type VertexChoice = readonly number[] | { from: Vec3; to: Vec3 };
 
 /** A cloth of any shape. */
@@ -791,10 +794,10 @@ export class Scene extends Deletable {
     readonly frameLimit: number;
     /** Seconds. */
     readonly timeStep: number;
-    /** The names of the files of a cloth that is a mesh; null where it is none, or a generated shape. */
+    /** The names of the files of a mesh cloth; null for a sheet or a generated shape. */
     readonly clothFile: string | null;
     readonly clothRestFile: string | null;
-    /** Of a sheet; null where the cloth is a mesh, and beside bodies. */
+    /** For a sheet; null for a mesh cloth, and with bodies. */
     readonly particleCount: number | null;
     /** The generated shape, repaired by the scene's options. @throws InvalidScene for a file: read and repair() it instead */
     makeModel(): Mesh;
@@ -818,9 +821,9 @@ export class Scene extends Deletable {
 /** Cloth and soft bodies among colliders. The same scene and map give the same positions, bit for bit, in every browser and in native C++. */
 export class Simulation extends Deletable {
     readonly particleCount: number;
-    /** [3 particleCount] a view of the simulation's own memory: get it anew each time, as with a buffer. Read only. */
+    /** [3 particleCount] A read-only view of the simulation's own memory: get it afresh each time, as with a buffer. */
     readonly positions: Float32Array;
-    /** [3 particleCount] where particles at their present velocities were one frame ago. */
+    /** [3 particleCount] The positions of particles one frame ago at their present velocities. */
     readonly previousPositions: Float32Array;
     /** [3 face_count] particles; a copy, constant over time. */
     readonly faces: Uint32Array;
@@ -828,11 +831,11 @@ export class Simulation extends Deletable {
     readonly atRest: boolean;
     /** Units per second; infinite before the first frame. */
     readonly largestSpeed: number;
-    /** 16 hexadecimal digits of all positions' bits. */
+    /** 16 hexadecimal digits, a hash of the bits of all positions. */
     readonly stateHash: string;
     /**
-     * Of the structural sticks, how far their lengths are from those at rest at the end of the last frame, as a share of
-     * these; 0 without such sticks. Under `jakobsen` it is what relaxations have left undone.
+     * The relative deviation of structural constraints from their rest lengths at the end of the last
+     * frame; 0 without such constraints. With `jakobsen` it is the residual error of the relaxations.
      */
     readonly residual: { readonly rootMeanSquare: number; readonly largest: number };
     /** Since the simulation began. */
@@ -860,30 +863,32 @@ export class Simulation extends Deletable {
      * @throws InvalidOptions; then nothing has changed
      */
     setColliderFree(mass: number, index?: number): void;
-    /** What the cloth exerted on a collider in the last frame by contact and friction, as its mean over the frame: N, N m. */
+    /** The load that the cloth exerted on a collider in the last frame by contact and friction, averaged over the frame: N, N m. */
     loadOn(index?: number): { readonly force: Vec3; readonly torque: Vec3 };
-    /** Whether the frames that follow record the contacts that push; off at the beginning. */
+    /** Sets whether the following frames record the contacts that push; off by default. */
     recordContacts(isOn?: boolean): void;
     /** The contacts that were recorded in the last frame; copies. */
     readonly contactPoints: ContactPoints;
-    /** Steers a collider, the first by default: it keeps these velocities until they are set again. Units and radians per second. */
+    /** Sets the velocities of a collider, by default the first, in units and radians per second. It keeps them until they are set again. */
     setColliderVelocity(linear: Vec3, angular: Vec3, index?: number): void;
     /**
-     * Deforms a collider, the first by default: the next step leads the vertices of its mesh here, each on a straight way;
-     * then they rest. The faces stay as they are, and the pose is another thing: it may move meanwhile. Faces of the cloth
-     * are kept off those that move as off any, and attached particles stay beside the face that was nearest to them when
-     * the collider first deformed. Builds the exact map anew: about a microsecond for each face.
-     * @param vertices  [3 vertexCount] in the collider's frame, of the mesh that its map was built of, in its order;
-     *                  copied, unless they are a PointBuffer
+     * Deforms a collider, by default the first: during the next step the vertices of its mesh move to
+     * these positions along straight lines; then they stop. The faces stay the same, and the pose is
+     * independent and may move at the same time. Faces of the cloth are kept off the moving faces as off
+     * any others, and attached particles follow the face that was nearest to them when the collider first
+     * deformed. The exact map is rebuilt, which takes about a microsecond per face.
+     * @param vertices  [3 vertexCount] in the collider's frame, in the order of the mesh from which its
+     *                  map was built; copied, unless they are a PointBuffer
      * @throws InvalidOptions for another number of vertices, one that is not finite, a collider without an exact map, or
      * a scene without surface_collision; InvalidMesh where no map is possible. Then nothing has changed
      */
     setColliderVertices(vertices: PointBuffer | Float32Array, index?: number): void;
 
     /**
-     * Gives a particle a velocity, units per second. To drag with the pointer, set it before each step, for the grabbed
-     * particle and its near neighbours, to (target of the pointer - present position) / (about 5 time steps): the cloth
-     * pulls at them and the collider stops them, so none of them is dragged into the model.
+     * Sets the velocity of a particle, in units per second. To drag with the pointer, set it before each
+     * step, for the grabbed particle and its near neighbours, to (target of the pointer - present
+     * position) / (about 5 time steps): the cloth pulls at them and the collider stops them, so none of
+     * them is dragged into the model.
      */
     setParticleVelocity(particle: number, velocity: Vec3): void;
     /**
@@ -928,15 +933,15 @@ export interface SimulationProfile {
     queryCount: number;
     contactCount: number;
     mapQueryCount: number;
-    /** How often a particle was put back to a free place at the end of a frame. */
+    /** Number of times that a particle was moved back to a free position at the end of a frame. */
     rescuedCount: number;
-    /** How often a particle ended a frame inside an exact map or beyond its surface, though it was free before: 0. */
+    /** Number of times that a particle that was free before ended a frame inside an exact map or beyond its surface: 0. */
     lostCount: number;
-    /** With surface_collision: how often a particle ended a frame short of where it was going, so that nothing meets. */
+    /** With surface_collision: number of times that the displacement of a particle was truncated. */
     truncatedCount: number;
-    /** Work of surface_collision: pairs of parts of faces that were measured. */
+    /** With surface_collision: vertex-face and edge-edge pairs whose distance was measured. */
     measuredPairCount: number;
-    /** Pairs of parts of faces for which no room was proven, summed over all steps. Only then may faces intersect: 0. */
+    /** Unresolved pairs of elements, for which no free space was proven, summed over all steps. If 0, no faces intersect. */
     squeezedCount: number;
 }
 
