@@ -32,17 +32,17 @@ void ImplicitStep::spread(std::span<std::uint8_t> marks) const {
 
 void ImplicitStep::begin(const Motion& motion, std::span<const Vec3d> accelerations,
                          std::span<const std::uint8_t> is_held, double step, double drag,
-                         const Others& others) {
+                         const ControlPoints& control_points) {
     is_held_ = is_held;
     translations_.begin_step(is_held);
     const std::size_t count = motion.particle_count();
     std::copy(motion.places.begin(), motion.places.end(), trial_.begin());
-    std::copy(others.places.begin(), others.places.end(),
+    std::copy(control_points.places.begin(), control_points.places.end(),
               trial_.begin() + static_cast<std::ptrdiff_t>(count));
     elastic_.begin_step(trial_, step);
     for (std::size_t i = count; i < masses_.size(); ++i) {
         inertia_[i] = masses_[i] / (step * step);
-        inertial_[i] = others.inertial[i - count];
+        inertial_[i] = control_points.inertial[i - count];
     }
     total_inertia_ = 0;
     for (std::size_t i = 0; i < count; ++i) {

@@ -63,16 +63,17 @@ class ImplicitStep {
     /// is to be of the same order for all of those, or what they do to each other would not balance.
     /// @param marks  [particle] 0 or 1
     void spread(std::span<std::uint8_t> marks) const;
+    /// Particles after those of a motion: the control points of rigid bodies.
+    struct ControlPoints {
+        Places places, inertial; ///< where they are, and where inertia and outer forces lead them
+    };
     /// Where inertia leads: begins a step. @param accelerations  [particle] by outer forces
     /// @param is_held  [particle] 1 for those that do not follow forces, but goals
     /// @param drag     the rate at which a velocity decays, 1/s
-    /// @param others   of particles after those of the motion, which know nothing of drag and of steps before
-    struct Others {
-        Places places, inertial; ///< where they are, and where inertia and outer forces lead them
-    };
+    /// @param control_points  make a step of first order without drag
     void begin(const Motion& motion, std::span<const Vec3d> accelerations,
                std::span<const std::uint8_t> is_held, double step, double drag = 0,
-               const Others& others = {});
+               const ControlPoints& control_points = {});
     /// Brings a guess nearer to what only moves as a whole until the energy without contacts is no greater
     /// than there, so that a step which only descends ends no higher, however far inertia leads.
     /// @param start  [particle] where the step begins; held particles as in the guess

@@ -11,42 +11,43 @@
 
 namespace echinus {
 
-/// A collider that moves freely, as unknowns of a step: four control points of a quarter of its mass each,
-/// which have its centre and its inertia and so move as it does (affine bodies, Lan et al. 2022), and a stiff
-/// tetrahedron between them. They stand beside the particles of the deformable, and contacts act on them as
-/// on those, so that neither side of a contact moves by what the other one did in the step before.
+/// A rigid body as unknowns of a step: four control points, each of a quarter of its mass, with the body's
+/// centre of mass and inertia, and a stiff tetrahedron between them (affine bodies, Lan et al. 2022). They
+/// follow the particles of the deformable, and contacts act on them as on particles. So both sides of a
+/// contact are solved together, and neither is moved by the forces of the step before.
 class FreeBody {
   public:
     static constexpr std::size_t kPointCount = 4;
 
-    /// @param first_point  its number among the particles
+    /// @param first_point  the number of its first control point among the particles
     FreeBody(std::uint32_t collider, std::uint32_t first_point, const RigidBody& body);
 
     std::uint32_t collider() const { return collider_; }
     std::uint32_t first_point() const { return first_point_; }
     double mass() const { return kPointCount * point_mass_; }
-    /// Does it stand for this body?
+    /// Does it represent this collider, with this mass and centre of mass?
     bool is_of(std::uint32_t collider, const RigidBody& body) const;
-    /// Adds the control points and their tetrahedron, which they follow those that are there.
-    /// @param time_step  the longest of a step, s
+    /// Appends the control points and their tetrahedron.
+    /// @param time_step  the longest step, s
     void add_to(ElasticParts& parts, double time_step) const;
 
-    /// Puts the control points where a pose has them.
+    /// Sets the places of the control points to those in a pose.
     void put(const RigidTransform& pose, std::span<Vec3d> places) const;
-    /// The pose whose control points are nearest to these. @param near  a pose not far from it
+    /// The rigid pose that is nearest to the places of the control points. @param near  a pose close to it
     RigidTransform fit(std::span<const Vec3d> places, const RigidTransform& near) const;
-    /// The force on its control points that ends a step here, about the pose's translation.
-    /// @param led  where inertia and gravity led it
+    /// The load by which the safe pose ends a step other than inertia and gravity alone would have ended it;
+    /// about the translation of the safe pose. @param led  the pose to which those two lead
     Load load(const RigidTransform& led, double seconds) const;
 
-    /// Lets a contact act on the control points, too. @param point  of the body, in the world, that it
-    /// touches @param start  as of ContactSet::add(), of the other part: changed to both
-    void join(ContactSet::Contact& contact, Vec3d& start, const Vec3d& point) const;
+    /// Makes a contact act on the control points, too. @param point  where it touches the body, in the world
+    /// @param start_apart  as `start` of ContactSet::add(): of the deformable's part in, relative to the body
+    /// out
+    void join(ContactSet::Contact& contact, Vec3d& start_apart, const Vec3d& point) const;
 
-    RigidTransform start_pose; ///< where the step began
+    RigidTransform start_pose; ///< when the step began
     RigidTransform safe_pose;  ///< in the safe state
-    RigidTransform goal_pose;  ///< where the displacement that is looked at leads
-    bool is_stopped = false;   ///< by what cannot yield to it
+    RigidTransform goal_pose;  ///< at the end of the displacement that is examined
+    bool is_stopped = false;   ///< by something that cannot yield
 
   private:
     std::array<Vec3d, kPointCount> points_at(const RigidTransform& pose) const;

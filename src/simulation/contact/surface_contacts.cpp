@@ -252,7 +252,8 @@ bool SurfaceContacts::find_ends(std::span<Vec3d> places, std::span<const double>
     return false;
 }
 
-/// Of free bodies that move: they stop where a pair would close all the same, between them and what is held.
+/// Marks free bodies that would close a pair although its particles have been pushed: those are held.
+/// @return whether there are any
 bool SurfaceContacts::meets_what_cannot_yield(const SafeDisplacements& displacements) {
     bool is_any = false;
     for (std::size_t s = 0; s < sides_.size(); ++s) {
@@ -270,7 +271,8 @@ FreeBody* SurfaceContacts::free_body_of(std::uint32_t collider) {
     return nullptr;
 }
 
-/// Free bodies go where their control points are wanted, as rigid as they are. @param goals  in, out
+/// Sets the goals of free bodies to the rigid poses that are nearest to those of their control points.
+/// @param goals  in, out
 void SurfaceContacts::head_for(std::span<Vec3d> goals) {
     for (FreeBody& body : free_bodies_) {
         body.goal_pose = body.fit(goals, body.safe_pose);
@@ -280,7 +282,7 @@ void SurfaceContacts::head_for(std::span<Vec3d> goals) {
         if (const FreeBody* const body = free_body_of(side.number)) side.head_for(body->goal_pose);
 }
 
-/// Free bodies have come where they went.
+/// The goals of free bodies are safe.
 void SurfaceContacts::arrive() {
     for (FreeBody& body : free_bodies_) {
         body.safe_pose = body.goal_pose;
@@ -290,7 +292,7 @@ void SurfaceContacts::arrive() {
         if (const FreeBody* const body = free_body_of(side.number)) side.set_pose(body->safe_pose);
 }
 
-/// Marks what did not reach its goal, and free bodies that it was stopped by. @param is_stopped  [body] set
+/// Marks what did not reach its goal, and the free bodies that stopped it. @param is_stopped  [body] set
 /// to 1 where any of it did not
 /// @return how many particles did not, and whether they belong to bodies that were not marked
 SurfaceContacts::Stopped SurfaceContacts::mark_stopped(Places goals, Places ends,

@@ -83,8 +83,9 @@ class SurfaceContacts {
     /// are. Those that nothing stops keep all their digits
     /// @return how many particles were stopped
     std::size_t advance(std::span<Vec3d> places, const StepEnergy& energy, const Workers& workers);
-    /// Measures the contacts anew where advance() has come, for the next proposal. Without it they stay those
-    /// that the solver has found the last one with: in balance, as loads and friction are to be.
+    /// Measures the contacts anew at the safe state that advance() has reached, for the next proposal. After
+    /// the last one they stay those with which the solver has found it: they are in balance, so loads and
+    /// friction are.
     void renew();
 
     /// Puts particles outside of colliders without faces, as far as those with faces allow.
