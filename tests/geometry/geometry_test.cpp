@@ -1,5 +1,6 @@
 #include "geometry/angles.hpp"
 #include "geometry/arena.hpp"
+#include "geometry/int128.hpp"
 #include "geometry/orientation.hpp"
 #include "geometry/whole_numbers.hpp"
 #include "support/random_points.hpp"
@@ -14,6 +15,7 @@
 #include <limits>
 #include <numbers>
 #include <numeric>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -209,6 +211,27 @@ Vec3f wide_point(Random& random) {
 }
 
 } // namespace
+
+TEST(WideProduct, IsTheSameInTwoHalvesAsInOneNumber) {
+    Random random(1);
+    std::vector<std::int64_t> numbers;
+    for (const std::int64_t least : {std::int64_t{0}, std::int64_t{1} << 31, std::int64_t{1} << 32,
+                                     std::numeric_limits<std::int64_t>::max()})
+        for (const std::int64_t away : {-1, 0, 1})
+            numbers.insert(numbers.end(), {static_cast<std::int64_t>(std::uint64_t(least) + away),
+                                           static_cast<std::int64_t>(-std::uint64_t(least) + away)});
+    for (int i = 0; i < 100; ++i) numbers.push_back(static_cast<std::int64_t>(random()) >> i % 64);
+    std::optional<std::pair<Int, portable::Int128>> last;
+    for (const std::int64_t a : numbers)
+        for (const std::int64_t b : numbers) {
+            const Int product = Int{a} * b;
+            const portable::Int128 halves = portable::wide_product(a, b);
+            ASSERT_EQ(halves.high, static_cast<std::int64_t>(product >> 64)) << a << " * " << b;
+            ASSERT_EQ(halves.low, static_cast<std::uint64_t>(product)) << a << " * " << b;
+            if (last) ASSERT_EQ(halves < last->second, product < last->first) << a << " * " << b;
+            last = {product, halves};
+        }
+}
 
 TEST(Orientation, IsTheSignOfTheDeterminantInWholeNumbers) {
     Random random(1);

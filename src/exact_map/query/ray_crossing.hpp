@@ -1,6 +1,7 @@
 #pragma once
 
 #include "directions/face_cone.hpp"
+#include "geometry/int128.hpp"
 
 #include <algorithm>
 #include <array>
@@ -118,9 +119,6 @@ class CrossingFilter {
 // p + (e, e^2, e^3), so that along a segment the signed crossings add up to the change of the winding
 // number.
 
-/// Holds the product of two int64.
-__extension__ using Int128 = __int128;
-
 /// A crossing at distance / (distance of both ends) of the way.
 struct SegmentCrossing {
     LatticePoint normal;        ///< of the face, not of unit length
@@ -143,8 +141,8 @@ struct SegmentCrossing {
   private:
     /// Sign of mine / way - theirs / other.way.
     int compare(std::int64_t mine, std::int64_t theirs, const SegmentCrossing& other) const {
-        const Int128 left = Int128{mine} * other.way;
-        const Int128 right = Int128{theirs} * way;
+        const Int128 left = wide_product(mine, other.way);
+        const Int128 right = wide_product(theirs, way);
         const int sign = (left > right) - (left < right);
         return (way > 0) == (other.way > 0) ? sign : -sign;
     }
