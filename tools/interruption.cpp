@@ -1,10 +1,9 @@
 #include "interruption.hpp"
 
-#include <unistd.h>
+#include "files/system.hpp"
 
 #include <atomic>
 #include <chrono>
-#include <csignal>
 #include <set>
 #include <thread>
 
@@ -18,7 +17,7 @@ struct Registry {
     std::atomic<bool> interrupted = false;
 };
 
-/// Never destroyed: the thread that waits for signals ends with the process.
+/// Never destroyed: the thread that cleans up ends with the process.
 Registry& registry() {
     static auto& instance = *new Registry;
     return instance;
@@ -34,34 +33,14 @@ void remove_for_good(const fs::path& path) {
     }
 }
 
-[[noreturn]] void clean_up_and_end(int signal, const sigset_t& signals) {
-    registry().interrupted = true;
-    pthread_sigmask(SIG_UNBLOCK, &signals, nullptr); // here a second one ends the program
-    {
-        const std::lock_guard lock(registry().mutex);
-        for (const fs::path& path : registry().paths) remove_for_good(path);
-    }
-    raise(signal);
-    _exit(128 + signal);
-}
-
-bool is_ignored(int signal) {
-    struct sigaction action {};
-    return sigaction(signal, nullptr, &action) == 0 && action.sa_handler == SIG_IGN;
-}
-
 } // namespace
 
 void clean_up_when_interrupted() {
-    sigset_t signals;
-    sigemptyset(&signals);
-    for (const int signal : {SIGINT, SIGTERM, SIGHUP})
-        if (!is_ignored(signal)) sigaddset(&signals, signal);
-    pthread_sigmask(SIG_BLOCK, &signals, nullptr); // all threads that are started later have the same mask
-    std::thread([signals] {
-        int signal = 0;
-        if (sigwait(&signals, &signal) == 0) clean_up_and_end(signal, signals);
-    }).detach();
+    echinus::system::when_interrupted([] {
+        registry().interrupted = true;
+        const std::lock_guard lock(registry().mutex);
+        for (const fs::path& path : registry().paths) remove_for_good(path);
+    });
 }
 
 RemovedWhenInterrupted::RemovedWhenInterrupted(fs::path path) : path_(std::move(path)) {
@@ -79,5 +58,5 @@ std::unique_lock<std::mutex> hold_interruption() {
 }
 
 void wait_if_interrupted() {
-    while (registry().interrupted) pause();
+    if (registry().interrupted) echinus::system::wait_for_end();
 }

@@ -4,9 +4,9 @@
 #include <mutex>
 
 /// From now on SIGINT, SIGTERM and SIGHUP first remove what is registered below and then end the program as
-/// they would have done, so that a shell sees 130, 143 or 129; a second signal ends it at once. Signals that
-/// are ignored, as under nohup, stay so. A thread waits for them, so that the program may be anywhere
-/// meanwhile.
+/// they would have done, so that a shell sees 130, 143 or 129 (files/system.hpp). A thread waits for them, so
+/// that the program may be anywhere meanwhile. On Windows a file that is open may stay; the next run removes
+/// it.
 /// @pre the program has no other threads yet
 void clean_up_when_interrupted();
 

@@ -14,7 +14,9 @@ void add_commands(Program& program) {
     add_build_command(command);
     add_query_command(command);
     add_simulate_command(command);
+#ifdef ECHINUS_WITH_RENDER
     add_render_command(command);
+#endif
     add_tetrahedralize_command(command);
     command.footer(
         "A file named - is standard input or standard output, except a scene.\n"

@@ -2,13 +2,10 @@
 
 #include "console/options.hpp"
 #include "files/atomic_file.hpp"
+#include "files/system.hpp"
 #include "mesh_io/mesh_source.hpp"
 
 #include <echinus/error.hpp>
-
-#include <fcntl.h>
-#include <sys/stat.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
@@ -38,7 +35,7 @@ fs::path nearest_existing_folder(fs::path path) {
 
 /// Makes a folder that others cannot read, if it is not there yet.
 void make_private_folder(const fs::path& path) {
-    if (mkdir(path.c_str(), S_IRWXU) != 0 && errno != EEXIST)
+    if (!echinus::system::make_private_folder(path))
         throw fs::filesystem_error("mkdir", path, std::error_code(errno, std::generic_category()));
 }
 
@@ -83,12 +80,12 @@ PartFolder::PartFolder(const fs::path& parent) {
     echinus::remove_abandoned_parts(parent);
     constexpr int kMostTries = 4;
     for (int tries = 0; tries < kMostTries; ++tries) {
-        if (lock_ >= 0) close(lock_);
+        if (hold_ >= 0) echinus::system::close(hold_);
         path_ = echinus::new_part(parent);
         removal_.emplace(path_);
         make_private_folder(path_);
-        lock_ = open(path_.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-        if (lock_ >= 0 && echinus::lock_part(lock_) && fs::exists(path_)) return;
+        hold_ = echinus::system::hold_folder(path_);
+        if (hold_ >= 0 && fs::exists(path_)) return;
     }
     make_private_folder(path_);
 }
@@ -96,7 +93,7 @@ PartFolder::PartFolder(const fs::path& parent) {
 PartFolder::~PartFolder() {
     std::error_code ignored;
     fs::remove_all(path_, ignored);
-    if (lock_ >= 0) close(lock_);
+    if (hold_ >= 0) echinus::system::close(hold_);
 }
 
 OutputFolder::OutputFolder(const fs::path& target) : target_(fs::absolute(target).lexically_normal()) {

@@ -41,7 +41,7 @@ class PartFolder {
 
   private:
     std::filesystem::path path_;
-    int lock_ = -1;
+    int hold_ = -1;
     std::optional<RemovedWhenInterrupted> removal_;
 };
 

@@ -1,5 +1,6 @@
 #include "run_program.hpp"
 
+#include "files/system.hpp"
 #include "interruption.hpp"
 #include "output.hpp"
 
@@ -12,6 +13,7 @@
 #include <new>
 #include <optional>
 #include <string_view>
+#include <vector>
 
 namespace {
 
@@ -56,12 +58,13 @@ void warn(const std::string& sentence) {
 
 int run_program(const std::string& name, const std::string& description,
                 const std::function<void(Program&)>& set_up, int argc, char** argv) {
+    const std::vector<std::string> arguments = echinus::system::begin_program(argc, argv);
     clean_up_when_interrupted();
     std::optional<Program> program;
     try {
         require_named_instruction_set();
         set_up(program.emplace(name, description));
-        if (const std::optional<std::string> text = program->run(argc, argv)) print(*text);
+        if (const std::optional<std::string> text = program->run(arguments)) print(*text);
         flush_standard_output();
         return 0;
     } catch (const WrongUse& error) {

@@ -17,7 +17,7 @@ int main() try {
     save(built, path);
 
     const ExactMap map = load_exact_map(path);
-    std::printf("%s: %zu faces, %zu cells, %zu bytes\n", path.c_str(), map.view().face_count(),
+    std::printf("%s: %zu faces, %zu cells, %zu bytes\n", path.string().c_str(), map.view().face_count(),
                 map.view().cell_count(), map.view().byte_count());
 
     // A thousand points on a line through the torus, answered in one call.

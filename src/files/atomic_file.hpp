@@ -12,18 +12,14 @@ ECHINUS_EXPORT_BEGIN
 namespace echinus {
 
 // A *part* is a result that is not finished: a file or folder called .echinus.part and a number, in the
-// folder where the result will be. Whoever writes it holds a lock (flock) on it, which goes with the process
-// however that ends, so that others can tell the parts that were abandoned. File systems without locks are
+// folder where the result will be. Whoever writes it holds it (files/system.hpp) until the process ends,
+// however that is, so that others can tell the parts that were abandoned. File systems without locks are
 // taken as holding all of them.
 
 /// The path of a part in this folder, which no other thread or process of ours uses.
 std::filesystem::path new_part(const std::filesystem::path& folder);
 
-/// Locks an open part until all copies of the descriptor are closed.
-/// @returns false where another process holds the lock, or the file system has no locks
-bool lock_part(int descriptor) noexcept;
-
-/// Removes the unlocked parts in this folder. Parts that cannot be removed stay.
+/// Removes the parts that nobody holds in this folder. Parts that cannot be removed stay.
 void remove_abandoned_parts(const std::filesystem::path& folder) noexcept;
 
 /// A file that appears whole or not at all: bytes go to a file in the target's folder that has no name
@@ -51,15 +47,14 @@ class AtomicFile {
 
   private:
     std::filesystem::path folder() const;
-    int open_unnamed();
-    int open_part();
+    int create_part();
     void give_name();
     [[noreturn]] void fail(const char* action) const;
 
     std::filesystem::path target_; // links resolved
     std::filesystem::path part_;   // empty: the file has no name, or target_ itself is written to
     bool is_in_place_ = false;     // target_ itself is written to
-    std::FILE* file_ = nullptr;    // holds the lock of a part
+    std::FILE* file_ = nullptr;    // holds the part
 };
 
 /// An AtomicFile with one write.

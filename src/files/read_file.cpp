@@ -1,25 +1,16 @@
 #include "files/read_file.hpp"
 
-#include <echinus/error.hpp>
+#include "files/system.hpp"
 
-#include <fcntl.h>
-#include <sys/stat.h>
-#include <unistd.h>
+#include <echinus/error.hpp>
 
 #include <algorithm>
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
 #include <memory>
+#include <optional>
 #include <string>
-
-#if __has_include(<sys/mman.h>)
-#include <fcntl.h>
-#include <sys/mman.h>
-#include <sys/stat.h>
-#include <unistd.h>
-#define ECHINUS_HAS_MMAP
-#endif
 
 namespace echinus {
 
@@ -35,11 +26,15 @@ using FileHandle = std::unique_ptr<std::FILE, int (*)(std::FILE*)>;
     throw Error(ErrorCode::Unreadable, name + ": cannot " + action + " the file: " + reason);
 }
 
-/// Of a regular file; 0 for others, and for those that do not know, as in /proc.
-std::size_t stated_size(std::FILE* file) {
-    struct stat status {};
-    const bool is_regular = fstat(fileno(file), &status) == 0 && S_ISREG(status.st_mode);
-    return is_regular ? static_cast<std::size_t>(status.st_size) : 0;
+FileHandle open_stream(const fs::path& path, int descriptor) {
+    std::FILE* const file = descriptor < 0 ? nullptr : system::stream_of(descriptor, "rb");
+    if (file == nullptr) {
+        const int reason = errno;
+        if (descriptor >= 0) system::close(descriptor);
+        errno = reason;
+        fail(path, "open");
+    }
+    return {file, &std::fclose};
 }
 
 } // namespace
@@ -47,9 +42,9 @@ std::size_t stated_size(std::FILE* file) {
 std::vector<std::byte> read_file(const fs::path& path, const CheckBeginning& check_beginning,
                                  std::size_t most_stream_bytes) {
     constexpr std::size_t kBlock = std::size_t{1} << 16;
-    const FileHandle file(std::fopen(path.c_str(), "rb"), &std::fclose);
-    if (file == nullptr) fail(path, "open");
-    const std::size_t size = stated_size(file.get());
+    const int descriptor = system::open_to_read(path);
+    const FileHandle file = open_stream(path, descriptor);
+    const auto size = static_cast<std::size_t>(system::size_of(descriptor).value_or(0));
     std::vector<std::byte> bytes;
     bytes.reserve(size);
     for (;;) {
@@ -72,21 +67,15 @@ namespace {
 
 /// The file as a mapping, or nothing where it has to be read. A pipe is not opened, which would take its
 /// bytes away.
-std::span<const std::byte> map_bytes([[maybe_unused]] const std::filesystem::path& path) {
-    std::span<const std::byte> bytes;
-#ifdef ECHINUS_HAS_MMAP
+std::span<const std::byte> map_bytes(const fs::path& path) {
     std::error_code ignored;
-    if (!std::filesystem::is_regular_file(path, ignored)) return bytes;
-    const int descriptor = open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
-    if (descriptor < 0) return bytes;
-    struct stat status {};
-    if (fstat(descriptor, &status) == 0 && S_ISREG(status.st_mode) && status.st_size > 0) {
-        const auto byte_count = static_cast<std::size_t>(status.st_size);
-        void* first = mmap(nullptr, byte_count, PROT_READ, MAP_PRIVATE, descriptor, 0);
-        if (first != MAP_FAILED) bytes = {static_cast<const std::byte*>(first), byte_count};
-    }
-    close(descriptor);
-#endif
+    if (!fs::is_regular_file(path, ignored)) return {};
+    const int descriptor = system::open_to_read(path);
+    if (descriptor < 0) return {};
+    const std::uint64_t size = system::size_of(descriptor).value_or(0);
+    std::span<const std::byte> bytes;
+    if (size > 0) bytes = system::map(descriptor, static_cast<std::size_t>(size));
+    system::close(descriptor);
     return bytes;
 }
 
@@ -100,18 +89,15 @@ MappedFile::MappedFile(const std::filesystem::path& path, const CheckBeginning& 
 }
 
 MappedFile::~MappedFile() {
-#ifdef ECHINUS_HAS_MMAP
-    if (copy_.empty() && !bytes_.empty()) munmap(const_cast<std::byte*>(bytes_.data()), bytes_.size());
-#endif
+    if (copy_.empty() && !bytes_.empty()) system::unmap(bytes_);
 }
 
 RandomAccessFile::RandomAccessFile(const std::filesystem::path& path) : path_(path) {
     std::error_code ignored;
-    if (std::filesystem::is_regular_file(path, ignored))
-        descriptor_ = open(path.c_str(), O_RDONLY | O_CLOEXEC);
-    struct stat status {};
-    if (descriptor_ >= 0 && fstat(descriptor_, &status) == 0) {
-        size_ = static_cast<std::uint64_t>(status.st_size);
+    if (fs::is_regular_file(path, ignored)) descriptor_ = system::open_to_read(path);
+    const std::optional<std::uint64_t> size = descriptor_ < 0 ? std::nullopt : system::size_of(descriptor_);
+    if (size) {
+        size_ = *size;
     } else {
         copy_ = read_file(path);
         size_ = copy_.size();
@@ -119,28 +105,20 @@ RandomAccessFile::RandomAccessFile(const std::filesystem::path& path) : path_(pa
 }
 
 RandomAccessFile::~RandomAccessFile() {
-    if (descriptor_ >= 0) close(descriptor_);
+    if (descriptor_ >= 0) system::close(descriptor_);
 }
 
 std::size_t RandomAccessFile::read(std::uint64_t offset, std::span<std::byte> bytes) const {
-    std::size_t count = 0;
     if (descriptor_ < 0) {
         const std::span<const std::byte> rest =
             std::span(copy_).subspan(std::min<std::uint64_t>(offset, size_));
-        count = std::min(bytes.size(), rest.size());
+        const std::size_t count = std::min(bytes.size(), rest.size());
         std::copy_n(rest.begin(), count, bytes.begin());
         return count;
     }
-    while (count < bytes.size()) {
-        const ssize_t read_count = pread(descriptor_, bytes.data() + count, bytes.size() - count,
-                                         static_cast<off_t>(offset + count));
-        if (read_count == 0) break;
-        if (read_count < 0 && errno != EINTR)
-            throw Error(ErrorCode::Unreadable,
-                        path_.string() + ": cannot read the file: " + std::strerror(errno));
-        count += static_cast<std::size_t>(std::max<ssize_t>(read_count, 0));
-    }
-    return count;
+    const std::optional<std::size_t> count = system::read_at(descriptor_, offset, bytes);
+    if (!count) fail(path_, "read");
+    return *count;
 }
 
 } // namespace echinus

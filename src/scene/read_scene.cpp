@@ -1,3 +1,4 @@
+#include "files/utf8_path.hpp"
 #include "scene/json_object.hpp"
 #include "scene/option_keys.hpp"
 
@@ -435,7 +436,7 @@ std::vector<std::uint32_t> read_ignores(JsonObject& object, const Scene& scene) 
 bool has_tetrahedra(const SceneModel& model) {
     const auto* file = std::get_if<ModelFile>(&model);
     if (file == nullptr) return false;
-    std::string ending = fs::path(file->name).extension().string();
+    std::string ending = utf8_path(file->name).extension().string();
     for (char& c : ending)
         if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
     return ending == ".msh" || ending == ".vtk" || ending == ".node" || ending == ".ele";

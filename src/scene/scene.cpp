@@ -1,3 +1,5 @@
+#include "files/utf8_path.hpp"
+
 #include <echinus/error.hpp>
 #include <echinus_scene/scene.hpp>
 
@@ -17,11 +19,11 @@ fs::path find(const std::string& name, std::span<const fs::path> folders, const 
               const IsRight& is_right) {
     std::string tried;
     for (const fs::path& folder : folders) {
-        const fs::path path = folder / name; // an absolute name replaces the folder
+        const fs::path path = folder / utf8_path(name); // an absolute name replaces the folder
         if (is_right(path)) return path;
         tried += (tried.empty() ? "" : ", ") + folder.string();
     }
-    if (fs::path(name).is_absolute())
+    if (utf8_path(name).is_absolute())
         throw Error(ErrorCode::Unreadable, what + name + " does not exist, or is not a file");
     throw Error(ErrorCode::Unreadable, std::string(what) + name + " is in none of the folders " + tried +
                                            "; scripts/setup puts the models of the scenes into models/");
@@ -72,7 +74,7 @@ namespace {
 
 /// How sentences call a model.
 struct NameOfModel {
-    std::string operator()(const ModelFile& file) const { return fs::path(file.name).filename().string(); }
+    std::string operator()(const ModelFile& file) const { return utf8_path(file.name).filename().string(); }
     std::string operator()(const TorusModel&) const { return "the torus"; }
     std::string operator()(const SphereModel&) const { return "the sphere"; }
     std::string operator()(const BoxModel&) const { return "the box"; }

@@ -161,14 +161,14 @@ TEST(CMaps, AreBuiltAgainFromOtherVertices) {
 
 TEST_F(CMapFile, IsSavedAndLoaded) {
     for (const CMap& map : {c_map(c_torus()), c_distance_map(c_torus())}) {
-        expect_ok(echinus_map_save(map.get(), path("torus.ech").c_str()));
+        expect_ok(echinus_map_save(map.get(), path("torus.ech").string().c_str()));
         CMap loaded;
-        expect_ok(echinus_map_load(path("torus.ech").c_str(), out(loaded)));
+        expect_ok(echinus_map_load(path("torus.ech").string().c_str(), out(loaded)));
         EXPECT_EQ(bytes_of(loaded), bytes_of(map));
         EXPECT_EQ(serialise(load_map(path("torus.ech"))), bytes_of(map));
     }
-    expect_refused(echinus_map_save(c_map(c_torus()).get(), path("no/torus.ech").c_str()), ECHINUS_UNWRITABLE,
-                   "no");
+    expect_refused(echinus_map_save(c_map(c_torus()).get(), path("no/torus.ech").string().c_str()),
+                   ECHINUS_UNWRITABLE, "no");
 }
 
 TEST(CMapViews, ReadInPlaceAndReleaseWhenTheLastUserIsGone) {

@@ -215,14 +215,15 @@ TEST(CMeshes, IntersectAsInCpp) {
 TEST_F(CMeshFile, IsWrittenAndReadAsInCpp) {
     const CMesh torus = c_torus();
     for (const char* name : {"torus.obj", "torus.ply", "torus.stl", "torus.off"}) {
-        expect_ok(echinus_mesh_write(torus.get(), path(name).c_str()));
+        expect_ok(echinus_mesh_write(torus.get(), path(name).string().c_str()));
         CMesh read;
-        expect_ok(echinus_mesh_read(path(name).c_str(), out(read)));
+        expect_ok(echinus_mesh_read(path(name).string().c_str(), out(read)));
         expect_same_mesh(read, read_mesh(path(name)));
     }
-    expect_refused(echinus_mesh_write(torus.get(), path("torus.xyz").c_str()), ECHINUS_WRONG_FORMAT,
+    expect_refused(echinus_mesh_write(torus.get(), path("torus.xyz").string().c_str()), ECHINUS_WRONG_FORMAT,
                    "torus.xyz");
-    expect_refused(echinus_mesh_write(torus.get(), path("no/torus.obj").c_str()), ECHINUS_UNWRITABLE, "no");
+    expect_refused(echinus_mesh_write(torus.get(), path("no/torus.obj").string().c_str()), ECHINUS_UNWRITABLE,
+                   "no");
 }
 
 } // namespace
@@ -312,12 +313,12 @@ TEST(CTetrahedra, HaveABoundaryThatIsAClosedMesh) {
 TEST_F(CTetrahedraFiles, ReadBackWithTheSameBits) {
     const CTetrahedra body = c_body(0.2);
     for (const char* name : {"a.msh", "a.vtk"}) {
-        expect_ok(echinus_tetrahedra_write(body.get(), path(name).c_str()));
+        expect_ok(echinus_tetrahedra_write(body.get(), path(name).string().c_str()));
         CTetrahedra read;
         echinus_tetrahedra_file_report report{};
         report.size = sizeof report;
         report.turned_tetrahedra = 7;
-        expect_ok(echinus_tetrahedra_read(path(name).c_str(), out(read), &report));
+        expect_ok(echinus_tetrahedra_read(path(name).string().c_str(), out(read), &report));
         EXPECT_EQ(report.turned_tetrahedra, 0U);
         EXPECT_EQ(report.dropped_vertices, 0U);
         ASSERT_EQ(echinus_tetrahedra_count(read.get()), echinus_tetrahedra_count(body.get()));
@@ -326,11 +327,12 @@ TEST_F(CTetrahedraFiles, ReadBackWithTheSameBits) {
                   0);
     }
     CTetrahedra none;
-    expect_refused(echinus_tetrahedra_read(path("none.msh").c_str(), out(none), nullptr), ECHINUS_UNREADABLE,
-                   "none.msh");
-    expect_refused(echinus_tetrahedra_read(write("torn.vtk", "# vtk\n").c_str(), out(none), nullptr),
+    expect_refused(echinus_tetrahedra_read(path("none.msh").string().c_str(), out(none), nullptr),
+                   ECHINUS_UNREADABLE, "none.msh");
+    expect_refused(echinus_tetrahedra_read(write("torn.vtk", "# vtk\n").string().c_str(), out(none), nullptr),
                    ECHINUS_WRONG_FORMAT, "torn.vtk");
-    expect_refused(echinus_tetrahedra_write(body.get(), path("a.obj").c_str()), ECHINUS_WRONG_FORMAT, ".obj");
+    expect_refused(echinus_tetrahedra_write(body.get(), path("a.obj").string().c_str()), ECHINUS_WRONG_FORMAT,
+                   ".obj");
     EXPECT_EQ(none, nullptr);
 }
 

@@ -423,16 +423,16 @@ TEST(CScenesOfTheRepository, AreSimulatedAsInCpp) {
 
 TEST_F(CScenes, FindTheirFilesInTheFoldersThatAreNamed) {
     const CMesh torus = c_torus();
-    expect_ok(echinus_mesh_write(torus.get(), path("torus.obj").c_str()));
+    expect_ok(echinus_mesh_write(torus.get(), path("torus.obj").string().c_str()));
     std::filesystem::create_directories(path("elsewhere"));
     const std::string json =
         R"({"model": "torus.obj", "cloth": {"particles": [5, 5], "size": [3, 3], "position": [0, 0, 0.6]}})";
     CScene scene;
     CSimulation simulation;
-    expect_ok(echinus_scene_read(write("scene.json", json).c_str(), out(scene)));
+    expect_ok(echinus_scene_read(write("scene.json", json).string().c_str(), out(scene)));
     expect_ok(echinus_simulation_from_scene(scene.get(), nullptr, 0, 1, out(simulation)));
 
-    expect_ok(echinus_scene_parse(json.c_str(), path("elsewhere/scene.json").c_str(), out(scene)));
+    expect_ok(echinus_scene_parse(json.c_str(), path("elsewhere/scene.json").string().c_str(), out(scene)));
     expect_refused(echinus_simulation_from_scene(scene.get(), nullptr, 0, 1, out(simulation)),
                    ECHINUS_UNREADABLE, "torus.obj");
     const std::string folder = path("").string();

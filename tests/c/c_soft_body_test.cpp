@@ -324,16 +324,16 @@ class CSoftBodyScenes : public TemporaryFolderTest {
 TEST_F(CSoftBodyScenes, AreReadWithTheirFiles) {
     const CMesh ball = c_mesh(kBall);
     CVertexCache cache;
-    expect_ok(echinus_vertex_cache_read(path("cache").c_str(), ball.get(), 24, out(cache)));
+    expect_ok(echinus_vertex_cache_read(path("cache").string().c_str(), ball.get(), 24, out(cache)));
     std::vector<Vec3f> last(kBall.vertices.size());
     expect_ok(echinus_vertex_cache_at(cache.get(), 9, &last.data()->x));
     EXPECT_EQ(last, grown(1.1F));
-    expect_refused(echinus_vertex_cache_read(path("cache").c_str(), c_torus().get(), 24, out(cache)),
+    expect_refused(echinus_vertex_cache_read(path("cache").string().c_str(), c_torus().get(), 24, out(cache)),
                    ECHINUS_INVALID_MESH, "cache");
-    expect_refused(echinus_vertex_cache_read(path("cache").c_str(), ball.get(), 0, out(cache)),
+    expect_refused(echinus_vertex_cache_read(path("cache").string().c_str(), ball.get(), 0, out(cache)),
                    ECHINUS_INVALID_ARGUMENT, "frames_per_second");
 
-    expect_ok(echinus_tetrahedra_write(c_block().get(), path("block.msh").c_str()));
+    expect_ok(echinus_tetrahedra_write(c_block().get(), path("block.msh").string().c_str()));
     const std::string scene_text =
         R"({"colliders": [{"model": {"box": {"size": [4, 4, 1]}}, "position": [0, 0, -2]},
             {"model": "ball.obj", "cache": "cache"}],
@@ -342,7 +342,7 @@ TEST_F(CSoftBodyScenes, AreReadWithTheirFiles) {
             {"mesh": "ball.obj", "element": 0.2, "position": [1, 0, 0]}]})";
     CScene scene;
     CSimulation simulation;
-    expect_ok(echinus_scene_read(write("scene.json", scene_text).c_str(), out(scene)));
+    expect_ok(echinus_scene_read(write("scene.json", scene_text).string().c_str(), out(scene)));
     expect_ok(echinus_simulation_from_scene(scene.get(), nullptr, 0, 1, out(simulation)));
     EXPECT_EQ(echinus_simulation_collider_count(simulation.get()), 2U);
     EXPECT_GT(echinus_simulation_particle_count(simulation.get()), 64U + 27);

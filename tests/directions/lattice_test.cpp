@@ -8,7 +8,6 @@
 #include <echinus/error.hpp>
 
 #include <gtest/gtest.h>
-#include <sys/mman.h>
 
 #include <algorithm>
 #include <cmath>
@@ -119,20 +118,6 @@ TEST(Lattice, RefusesFacesWhoseVerticesAreNotThere) {
         test::expect_error(ErrorCode::InvalidMesh, words, [&] { snapper.snap(vertices, result); });
         test::expect_error(ErrorCode::InvalidMesh, words, [&] { snapper.snap(vertices, Vec3f{}, result); });
     }
-}
-
-TEST(Lattice, RefusesMoreFacesThanCanBeNumbered) {
-    // Address space that nothing may read.
-    const std::size_t count = kMostFaces + 1, bytes = count * sizeof(Triangle);
-    void* space = mmap(nullptr, bytes, PROT_NONE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
-    if (space == MAP_FAILED) GTEST_SKIP() << "no room for so many addresses";
-    LatticeSnapper snapper({static_cast<const Triangle*>(space), count});
-    LatticeMesh lattice;
-    test::expect_error(ErrorCode::InvalidMesh, "1073741825 faces",
-                       [&] { snapper.snap(std::vector<Vec3f>(3), lattice); });
-    munmap(space, bytes);
-    test::expect_error(ErrorCode::InvalidMesh, "3221225473 vertices",
-                       [] { require_numberable(1, 3 * kMostFaces + 1); });
 }
 
 using test::joined;

@@ -1,5 +1,6 @@
 #include "mesh_io/point_cache.hpp"
 #include "support/attacks.hpp"
+#include "support/memory_file.hpp"
 
 #include <echinus/error.hpp>
 

@@ -1,5 +1,6 @@
 #include "points/points.hpp"
 #include "support/attacks.hpp"
+#include "support/memory_file.hpp"
 
 #include <echinus/error.hpp>
 

@@ -1,11 +1,15 @@
 #include "mesh_io/exported_files.hpp"
 
+#ifdef ECHINUS_WITH_ASSIMP
 #include <assimp/Exporter.hpp>
 #include <assimp/scene.h>
+#endif
 
 #include <stdexcept>
 
 namespace echinus::test {
+
+#ifdef ECHINUS_WITH_ASSIMP
 
 namespace {
 
@@ -27,6 +31,10 @@ aiMesh* make_mesh(const TriangleMesh& mesh) {
 
 } // namespace
 
+bool can_export() {
+    return true;
+}
+
 void export_with_assimp(const std::filesystem::path& path, const TriangleMesh& mesh, const ExportedKind& kind,
                         const Placement& placement) {
     aiScene scene;
@@ -46,5 +54,18 @@ void export_with_assimp(const std::filesystem::path& path, const TriangleMesh& m
     if (exporter.Export(&scene, kind.exporter, path.string()) != aiReturn_SUCCESS)
         throw std::runtime_error(exporter.GetErrorString());
 }
+
+#else
+
+bool can_export() {
+    return false;
+}
+
+void export_with_assimp(const std::filesystem::path&, const TriangleMesh&, const ExportedKind&,
+                        const Placement&) {
+    throw std::logic_error(kCannotExport);
+}
+
+#endif
 
 } // namespace echinus::test

@@ -27,6 +27,10 @@ inline constexpr std::array<ExportedKind, 8> kExportedKinds{{{"obj", ".obj"},
 using Placement = std::array<float, 12>;
 inline constexpr Placement kInPlace{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
 
+/// False where the tests were built without Assimp: then those that export skip themselves.
+bool can_export();
+inline constexpr const char* kCannotExport = "these tests were built without Assimp";
+
 /// Writes the mesh with Assimp's exporter, in a node with this placement.
 void export_with_assimp(const std::filesystem::path& path, const TriangleMesh& mesh, const ExportedKind& kind,
                         const Placement& placement = kInPlace);

@@ -92,6 +92,7 @@ class ReadGltf : public TemporaryFolderTest {
 // ---- Nodes and scenes ----
 
 TEST_F(ReadGltf, AppliesTheTransformsOfNodes) {
+    if (!can_export()) GTEST_SKIP() << kCannotExport;
     // Turned by a quarter about z, twice as large along x, and moved.
     const Placement placement{0, -1, 0, 10, 2, 0, 0, 20, 0, 0, 1, 30};
     TriangleMesh expected = kBoxInGltf;
@@ -113,6 +114,7 @@ TEST_F(ReadGltf, ComposesTranslationRotationAndScaleDownTheTree) {
 }
 
 TEST_F(ReadGltf, KeepsFacesOutwardUnderAMirroringTransform) {
+    if (!can_export()) GTEST_SKIP() << kCannotExport;
     const Placement mirror{-1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
     export_with_assimp(path("mirror.glb"), kBoxInGltf, kGlb, mirror);
     const MeshReport report = inspect(read_mesh(path("mirror.glb")));
@@ -552,6 +554,7 @@ TEST_F(ReadGltf, RefusesASmallFileOfWhichAHugeMeshWouldBeMade) {
 }
 
 TEST_F(ReadGltf, NoticesThatAFileIsShorterThanItSays) {
+    if (!can_export()) GTEST_SKIP() << kCannotExport;
     const std::string glb = exported(kGlb);
     expect_refused(ErrorCode::Damaged, "the file says that it has", "cut.glb", glb.substr(0, glb.size() - 1));
     expect_refused(ErrorCode::Damaged, "the file says that it has", "long.glb", glb + "x");
@@ -562,6 +565,7 @@ TEST_F(ReadGltf, NoticesThatAFileIsShorterThanItSays) {
 }
 
 TEST_F(ReadGltf, RefusesAFileWithoutItsBuffer) {
+    if (!can_export()) GTEST_SKIP() << kCannotExport;
     const std::string gltf = exported(kGltf);
     fs::remove(path("exported.bin"));
     expect_refused(ErrorCode::Unreadable, "buffers[0] is in the file exported.bin, which is not there",
@@ -574,6 +578,7 @@ TEST_F(ReadGltf, RefusesAFileWithoutItsBuffer) {
 }
 
 TEST_F(ReadGltf, DoesNotOpenABufferThatIsNoOrdinaryFile) {
+    if (!can_export()) GTEST_SKIP() << kCannotExport;
     if (!fs::exists("/dev/zero")) GTEST_SKIP() << "this system has no /dev/zero";
     fs::create_symlink("/dev/zero", path("endless.bin"));
     expect_refused(ErrorCode::Unreadable, "is no ordinary file", "endless.gltf",
@@ -581,6 +586,7 @@ TEST_F(ReadGltf, DoesNotOpenABufferThatIsNoOrdinaryFile) {
 }
 
 TEST_F(ReadGltf, RefusesCoordinatesThatAreNotFinite) {
+    if (!can_export()) GTEST_SKIP() << kCannotExport;
     std::string glb = exported(kGlb);
     const float nan = std::numeric_limits<float>::quiet_NaN();
     const std::size_t buffer = glb.find(std::string("BIN\0", 4)) + 4; // positions come first

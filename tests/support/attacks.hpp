@@ -7,14 +7,8 @@
 #include <echinus/mesh.hpp>
 #include <echinus/tetrahedra.hpp>
 
-#include <sys/mman.h>
-#include <unistd.h>
-
-#include <cstddef>
 #include <cstdio>
 #include <cstdlib>
-#include <filesystem>
-#include <span>
 #include <string>
 #include <string_view>
 
@@ -26,28 +20,6 @@ inline void require_sentence(std::string_view sentence, std::string_view name) {
     std::fprintf(stderr, "not a sentence: %.*s\n", static_cast<int>(sentence.size()), sentence.data());
     std::abort();
 }
-
-/// A file in memory, for readers that take a path.
-class MemoryFile {
-  public:
-    MemoryFile() : descriptor_(memfd_create("echinus", MFD_CLOEXEC)) {
-        if (descriptor_ < 0) std::abort();
-    }
-    MemoryFile(const MemoryFile&) = delete;
-    MemoryFile& operator=(const MemoryFile&) = delete;
-    ~MemoryFile() { close(descriptor_); }
-
-    std::filesystem::path path() const { return "/proc/self/fd/" + std::to_string(descriptor_); }
-    /// In place of what it held.
-    void hold(std::span<const std::byte> bytes) {
-        const auto size = static_cast<ssize_t>(bytes.size());
-        if (ftruncate(descriptor_, 0) != 0 || pwrite(descriptor_, bytes.data(), bytes.size(), 0) != size)
-            std::abort();
-    }
-
-  private:
-    int descriptor_;
-};
 
 /// A reader of hostile bytes either refuses them with an Error or gives a mesh that all functions accept.
 /// @param name  its ending determines the format

@@ -2,6 +2,7 @@
 
 #include "commands/descriptions.hpp"
 #include "files/read_file.hpp"
+#include "files/utf8_path.hpp"
 #include "input_file.hpp"
 
 #include <echinus/error.hpp>
@@ -32,7 +33,9 @@ struct MeshOfModel {
 };
 
 struct NameOfModel {
-    std::string operator()(const ModelFile& file) const { return fs::path(file.name).filename().string(); }
+    std::string operator()(const ModelFile& file) const {
+        return echinus::utf8_path(file.name).filename().string();
+    }
     std::string operator()(const TorusModel&) const { return "torus"; }
     std::string operator()(const SphereModel&) const { return "sphere"; }
     std::string operator()(const BoxModel&) const { return "box"; }

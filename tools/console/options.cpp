@@ -1,6 +1,7 @@
 #include "console/options.hpp"
 
 #include "files/text.hpp"
+#include "files/utf8_path.hpp"
 
 #include <CLI/CLI.hpp>
 
@@ -42,8 +43,20 @@ CLI::Option* add_option(CLI::App& app, const std::string& name, const ArgumentTa
     }
     return std::visit(
         [&](auto variable) -> CLI::Option* {
-            if constexpr (std::is_pointer_v<decltype(variable)>)
+            using Variable = decltype(variable);
+            if constexpr (std::is_same_v<Variable, std::filesystem::path*>) {
+                return app.add_option_function<std::string>(
+                    name, [variable](const std::string& text) { *variable = echinus::utf8_path(text); },
+                    description);
+            } else if constexpr (std::is_same_v<Variable, std::vector<std::filesystem::path>*>) {
+                const auto store = [variable](const std::vector<std::string>& texts) {
+                    variable->clear();
+                    for (const std::string& text : texts) variable->push_back(echinus::utf8_path(text));
+                };
+                return app.add_option_function<std::vector<std::string>>(name, store, description);
+            } else if constexpr (std::is_pointer_v<Variable>) {
                 return app.add_option(name, *variable, description);
+            }
             return nullptr; // the function, dealt with above
         },
         target);
@@ -163,7 +176,7 @@ Option Option::not_empty() const {
 
 Option Option::ends_in(const std::string& ending) const {
     option_->check([ending](const std::string& text) {
-        const std::filesystem::path file(text);
+        const std::filesystem::path file = echinus::utf8_path(text);
         std::string own = file.extension().string();
         std::transform(own.begin(), own.end(), own.begin(),
                        [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
@@ -279,9 +292,10 @@ std::string Program::given_command() const {
     return path;
 }
 
-std::optional<std::string> Program::run(int argument_count, const char* const* arguments) {
+std::optional<std::string> Program::run(const std::vector<std::string>& arguments) {
     try {
-        app_->parse(argument_count, arguments);
+        app_->parse(
+            std::vector<std::string>(arguments.rbegin(), arguments.rend())); // CLI11 wants the last first
         return std::nullopt;
     } catch (const CLI::Success& help_or_version) {
         std::ostringstream text;

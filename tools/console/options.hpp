@@ -105,10 +105,10 @@ class Program {
     void add_version(const std::string& text);
     /// The program and the commands that were given, such as "echinus mesh torus".
     std::string given_command() const;
-    /// Parses the arguments and runs the actions of the commands that they name.
+    /// Parses the arguments behind the program's name and runs the actions of the commands that they name.
     /// @returns the help or version to print, where it was asked for
     /// @throws WrongUse, and what the actions throw
-    std::optional<std::string> run(int argument_count, const char* const* arguments);
+    std::optional<std::string> run(const std::vector<std::string>& arguments);
 
   private:
     std::unique_ptr<CLI::App> app_;

@@ -1,13 +1,14 @@
 #include "console/progress.hpp"
 
+#include "files/system.hpp"
+
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cstdio>
 
 ProgressBar::ProgressBar(std::string label)
-    : label_(std::move(label)), on_terminal_(isatty(STDERR_FILENO) == 1) {}
+    : label_(std::move(label)), on_terminal_(echinus::system::has_terminal()) {}
 
 ProgressBar::~ProgressBar() {
     if (drawn_) std::fputs("\r\033[K", stderr);

@@ -3,6 +3,7 @@
 #include "console/machine.hpp"
 #include "encoding.hpp"
 #include "files/read_file.hpp"
+#include "files/system.hpp"
 #include "recording/recording.hpp"
 #include "recording/threads.hpp"
 
@@ -127,9 +128,7 @@ constexpr std::string_view kPlace = "<!-- recording -->";
 
 /// Beside the program, so that an installed tree may be moved.
 fs::path installed_player() {
-    std::error_code ignored;
-    const fs::path program = fs::read_symlink("/proc/self/exe", ignored);
-    return (program.parent_path() / ECHINUS_DATA_FOLDER / "player.html").lexically_normal();
+    return (system::program_path().parent_path() / ECHINUS_DATA_FOLDER / "player.html").lexically_normal();
 }
 
 std::string read_text(const fs::path& path) {

@@ -1,5 +1,7 @@
 #pragma once
 
+#include "files/utf8_path.hpp"
+
 #include <echinus/echinus.h>
 #include <echinus/geometry.hpp>
 

@@ -180,7 +180,7 @@ AnyMap view_of(const void* bytes, std::size_t byte_count, std::shared_ptr<const 
 } // namespace echinus::c
 
 echinus_status echinus_map_save(const echinus_map* map, const char* path) {
-    return guarded(__func__, [&] { save(any_map_at(map), &at(path, "path")); });
+    return guarded(__func__, [&] { save(any_map_at(map), utf8_path(&at(path, "path"))); });
 }
 
 echinus_status echinus_map_serialise(const echinus_map* map, echinus_array** bytes) {
@@ -188,7 +188,7 @@ echinus_status echinus_map_serialise(const echinus_map* map, echinus_array** byt
 }
 
 echinus_status echinus_map_load(const char* path, echinus_map** map) {
-    return make(__func__, map, [&]() -> ColliderMap { return load_map(&at(path, "path")); });
+    return make(__func__, map, [&]() -> ColliderMap { return load_map(utf8_path(&at(path, "path"))); });
 }
 
 echinus_status echinus_map_view(const void* bytes, size_t byte_count, void (*release)(void* context),

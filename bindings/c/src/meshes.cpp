@@ -126,11 +126,11 @@ echinus_status echinus_mesh_create_double(const double* vertices, size_t vertex_
 }
 
 echinus_status echinus_mesh_read(const char* path, echinus_mesh** mesh) {
-    return make(__func__, mesh, [&] { return read_mesh(&at(path, "path")); });
+    return make(__func__, mesh, [&] { return read_mesh(utf8_path(&at(path, "path"))); });
 }
 
 echinus_status echinus_mesh_write(const echinus_mesh* mesh, const char* path) {
-    return guarded(__func__, [&] { write_mesh(&at(path, "path"), mesh_at(mesh)); });
+    return guarded(__func__, [&] { write_mesh(utf8_path(&at(path, "path")), mesh_at(mesh)); });
 }
 
 echinus_status echinus_mesh_torus(double major_radius, double minor_radius, uint32_t major_segments,

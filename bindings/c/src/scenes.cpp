@@ -65,7 +65,7 @@ class Meshes {
 std::vector<fs::path> folders_from(const char* const* folders, std::size_t count, const fs::path& of_scene) {
     std::vector<fs::path> result;
     for (const char* const& folder : values_at(folders, count, "folders"))
-        result.emplace_back(&at(folder, "a folder"));
+        result.push_back(utf8_path(&at(folder, "a folder")));
     result.push_back(of_scene);
     result.push_back(of_scene / ".." / "models");
     return result;
@@ -86,7 +86,7 @@ echinus_status echinus_scene_read(const char* path, echinus_scene** scene) {
     if (scene != nullptr) *scene = nullptr;
     return guarded(__func__, [&] {
         at(scene, "scene");
-        const std::filesystem::path file(&at(path, "path"));
+        const std::filesystem::path file = utf8_path(&at(path, "path"));
         *scene = new echinus_scene{read_scene(file), folder_of(file)};
     });
 }
@@ -94,7 +94,8 @@ echinus_status echinus_scene_parse(const char* json, const char* name, echinus_s
     if (scene != nullptr) *scene = nullptr;
     return guarded(__func__, [&] {
         at(scene, "scene");
-        *scene = new echinus_scene{parse_scene(&at(json, "json"), &at(name, "name")), folder_of(name)};
+        *scene =
+            new echinus_scene{parse_scene(&at(json, "json"), &at(name, "name")), folder_of(utf8_path(name))};
     });
 }
 

@@ -69,7 +69,7 @@ echinus_status echinus_tetrahedra_create(const float* vertices, size_t vertex_co
 echinus_status echinus_tetrahedra_read(const char* path, echinus_tetrahedra** body,
                                        echinus_tetrahedra_file_report* report) {
     return make(__func__, body, [&] {
-        TetrahedraFile file = read_tetrahedra(&at(path, "path"));
+        TetrahedraFile file = read_tetrahedra(utf8_path(&at(path, "path")));
         if (report != nullptr)
             write_struct(report,
                          {.size = 0,
@@ -80,7 +80,7 @@ echinus_status echinus_tetrahedra_read(const char* path, echinus_tetrahedra** bo
     });
 }
 echinus_status echinus_tetrahedra_write(const echinus_tetrahedra* body, const char* path) {
-    return guarded(__func__, [&] { write_tetrahedra(&at(path, "path"), body_at(body)); });
+    return guarded(__func__, [&] { write_tetrahedra(utf8_path(&at(path, "path")), body_at(body)); });
 }
 
 echinus_status echinus_tetrahedra_box(const double* size, const uint32_t* segments,

@@ -45,7 +45,7 @@ echinus_status echinus_vertex_cache_read(const char* path, const echinus_mesh* m
     return make(__func__, cache, [&] {
         require(std::isfinite(frames_per_second) && frames_per_second > 0,
                 "frames_per_second is not positive and finite");
-        return read_vertex_cache(&at(path, "path"), at(mesh, "mesh").value, frames_per_second);
+        return read_vertex_cache(utf8_path(&at(path, "path")), at(mesh, "mesh").value, frames_per_second);
     });
 }
 

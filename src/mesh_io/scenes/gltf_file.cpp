@@ -1,6 +1,7 @@
 #include "mesh_io/scenes/gltf_file.hpp"
 
 #include "files/read_file.hpp"
+#include "files/utf8_path.hpp"
 #include "geometry/whole_numbers.hpp"
 #include "mesh_io/mesh_source.hpp"
 #include "mesh_io/readers.hpp"
@@ -325,16 +326,16 @@ const GltfValue& GltfFile::element(const char* key, const GltfValue& user) {
 }
 
 std::string_view GltfFile::read_beside(const GltfValue& buffer, const std::string& uri) {
-    if (uri.find("://") != std::string::npos || fs::path(percent_decoded(uri)).has_root_path())
+    if (uri.find("://") != std::string::npos || utf8_path(percent_decoded(uri)).has_root_path())
         buffer.fail("lies at " + shown(uri) + "; only files named by their path from this one are read",
                     ErrorCode::Unreadable);
     const auto [entry, is_new] = files_.try_emplace(uri);
     std::vector<std::byte>& bytes = entry->second;
     if (is_new) {
-        const fs::path folder = fs::path(source_.name).parent_path();
+        const fs::path folder = utf8_path(source_.name).parent_path();
         std::error_code ignored;
-        fs::path path = folder / percent_decoded(uri);
-        if (!fs::exists(path, ignored)) path = folder / uri; // a name with a percent sign in it
+        fs::path path = folder / utf8_path(percent_decoded(uri));
+        if (!fs::exists(path, ignored)) path = folder / utf8_path(uri); // a name with a percent sign in it
         // A pipe or a device named here could have no end.
         if (!fs::is_regular_file(path, ignored))
             buffer.fail("is in the file " + shown(uri) + ", which is not there or is no ordinary file",
