@@ -6,6 +6,7 @@ endif()
 get_filename_component(emcc_file ${EMCC_PROGRAM} REALPATH)
 get_filename_component(EMSCRIPTEN_ROOT_PATH ${emcc_file} DIRECTORY)
 include(${EMSCRIPTEN_ROOT_PATH}/cmake/Modules/Platform/Emscripten.cmake)
+set(ECHINUS_HOST_HEADERS ON)
 
 # Native WebAssembly exceptions: without them, each call that might throw goes through JavaScript. 128-bit
 # vectors, but not relaxed ones, whose results differ between machines.

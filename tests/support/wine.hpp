@@ -1,16 +1,13 @@
 #pragma once
 
-#ifdef _WIN32
-#include <windows.h>
-#endif
+#include <filesystem>
 
 namespace echinus::test {
 
 /// Does the test run in Wine?
 inline bool is_wine() {
 #ifdef _WIN32
-    const HMODULE system = GetModuleHandleW(L"ntdll.dll");
-    return system != nullptr && GetProcAddress(system, "wine_get_version") != nullptr;
+    return std::filesystem::exists("C:/windows/system32/winecfg.exe");
 #else
     return false;
 #endif

@@ -50,7 +50,11 @@ extern "C" {
 #endif
 
 #ifndef ECHINUS_API
-#if defined(__GNUC__)
+#if defined(_WIN32) && defined(echinus_c_EXPORTS) /* while the library is built */
+#define ECHINUS_API __declspec(dllexport)
+#elif defined(_WIN32)
+#define ECHINUS_API __declspec(dllimport)
+#elif defined(__GNUC__)
 #define ECHINUS_API __attribute__((visibility("default")))
 #else
 #define ECHINUS_API
