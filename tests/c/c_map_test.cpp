@@ -420,7 +420,7 @@ TEST(CQueries, FindTheFacesWithinReachOfAMesh) {
         same_bits(values_of<std::uint32_t>(offsets), std::span<const std::uint32_t>(expected.offsets)));
     EXPECT_TRUE(same_bits(values_of<std::uint32_t>(faces), std::span<const std::uint32_t>(expected.faces)));
     EXPECT_GT(expected.faces.size(), 100U);
-    expect_refused(ask(20), ECHINUS_INVALID_ARGUMENT, "names vertex");
+    expect_refused(ask(20), ECHINUS_INVALID_ARGUMENT, "refers to vertex");
     EXPECT_EQ(offsets, nullptr);
 }
 

@@ -191,7 +191,7 @@ TEST(CSoftBodies, PartsNameTheirOwnParticlesOnly) {
     const CDeformable right = c_sheet();
     const echinus_deformable* parts[2] = {right.get(), wrong.get()};
     expect_refused(echinus_deformable_combine(parts, 2, out(both)), ECHINUS_INVALID_OPTIONS,
-                   "part 1: a stick names particle 4294967295 of 2");
+                   "part 1: a distance constraint refers to particle 4294967295 of 2");
     parts[0] = nullptr;
     expect_refused(echinus_deformable_combine(parts, 2, out(both)), ECHINUS_INVALID_ARGUMENT,
                    "a part is NULL");

@@ -99,18 +99,18 @@ Deformable deformable_from(const echinus_deformable_arrays& arrays) {
 void require_own_particles(const Deformable& part, std::size_t number) {
     const auto require_there = [&](std::uint32_t particle, const char* what) {
         if (particle >= part.particle_count())
-            throw Error(ErrorCode::InvalidOptions, "part " + std::to_string(number) + ": a " + what +
-                                                       " names particle " + std::to_string(particle) +
+            throw Error(ErrorCode::InvalidOptions, "part " + std::to_string(number) + ": " + what +
+                                                       " refers to particle " + std::to_string(particle) +
                                                        " of " + std::to_string(part.particle_count()));
     };
     for (const Stick& s : part.sticks)
-        for (const std::uint32_t particle : {s.a, s.b}) require_there(particle, "stick");
+        for (const std::uint32_t particle : {s.a, s.b}) require_there(particle, "a distance constraint");
     for (const Triangle& face : part.faces)
-        for (const std::uint32_t particle : face) require_there(particle, "face");
-    for (const Attachment& a : part.attachments) require_there(a.particle, "attachment");
-    for (const CollisionFilter& f : part.filters) require_there(f.particle, "filter");
+        for (const std::uint32_t particle : face) require_there(particle, "a face");
+    for (const Attachment& a : part.attachments) require_there(a.particle, "an attachment");
+    for (const CollisionFilter& f : part.filters) require_there(f.particle, "a filter");
     for (const ElasticTetrahedron& t : part.tetrahedra)
-        for (const std::uint32_t particle : t.particles) require_there(particle, "tetrahedron");
+        for (const std::uint32_t particle : t.particles) require_there(particle, "a tetrahedron");
 }
 
 Deformable combined(std::span<const echinus_deformable* const> parts) {

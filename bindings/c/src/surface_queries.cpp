@@ -22,7 +22,7 @@ namespace {
 void require_in_range(std::span<const Triangle> triangles, std::size_t vertex_count) {
     for (std::size_t i = 0; i < triangles.size(); ++i)
         if (std::ranges::max(triangles[i]) >= vertex_count)
-            throw WrongArgument("triangle " + std::to_string(i) + " names vertex " +
+            throw WrongArgument("triangle " + std::to_string(i) + " refers to vertex " +
                                 std::to_string(std::ranges::max(triangles[i])) + " of " +
                                 std::to_string(vertex_count));
 }
