@@ -14,7 +14,7 @@ namespace {
 
 using namespace echinus;
 
-void write_result(const std::string& target, const TriangleMesh& mesh) {
+void write_result(const std::filesystem::path& target, const TriangleMesh& mesh) {
     require_ending(target, {".obj", ".ply", ".stl", ".off"});
     if (target == kStandardStream)
         print(encode_obj(mesh));
@@ -24,7 +24,7 @@ void write_result(const std::string& target, const TriangleMesh& mesh) {
 
 /// A shape's command with what all shapes have in common.
 Command add_shape(Command mesh, const std::string& name, const std::string& description,
-                  const std::string& example, std::string& target) {
+                  const std::string& example, std::filesystem::path& target) {
     Command shape = mesh.add_command(name, description);
     shape.add("-o,--output", &target, "File to write: .obj, .ply, .stl or .off; - for OBJ on standard output")
         .required();
@@ -36,7 +36,7 @@ struct Torus {
     double major = 1;
     double minor = 0.4;
     std::uint32_t major_segments = 60, minor_segments = 24;
-    std::string target;
+    std::filesystem::path target;
 };
 
 void add_torus(Command mesh) {
@@ -59,7 +59,7 @@ void add_torus(Command mesh) {
 struct SphereOptions {
     double radius = 1;
     std::uint32_t meridians = 60, parallels = 30;
-    std::string target;
+    std::filesystem::path target;
 };
 
 void add_sphere(Command mesh) {
@@ -80,7 +80,7 @@ void add_sphere(Command mesh) {
 struct Box {
     Vec3d size{1, 1, 1};
     std::uint32_t segments = 1;
-    std::string target;
+    std::filesystem::path target;
 };
 
 void add_box(Command mesh) {
@@ -109,7 +109,7 @@ void mend(Mending arguments) {
     arguments.repair.repair = !arguments.keep_faults;
     const auto [mesh, report] = naming_mesh(
         arguments.mesh.name(), [&] { return repair(read_mesh(arguments.mesh), arguments.repair.options()); });
-    write_result(arguments.target.string(), mesh);
+    write_result(arguments.target, mesh);
     const bool closed = inspect(mesh).closed;
     if (arguments.json) {
         Json object = to_json(report);
