@@ -114,7 +114,7 @@ TEST(Embed, DoesNotDependOnTheNumberOfThreads) {
 }
 
 TEST(Embed, RefusesPointsThatAreNotFinite) {
-    expect_error(ErrorCode::InvalidMesh, "point 1 of those to be embedded is not finite", [] {
+    expect_error(ErrorCode::InvalidMesh, "point 1 to be embedded is not finite", [] {
         embed(make_brick(1), std::vector<Vec3f>{{0, 0, 0}, {0, std::numeric_limits<float>::infinity(), 0}});
     });
 }
