@@ -440,12 +440,13 @@ class Simulation {
     /// not have unit length to within 1e-4, or a time is not later than the previous one
     void set_collider_keyframes(std::size_t collider_index, std::vector<PoseKey> keys);
 
-    /// Newton: the collider moves freely from its present velocities, as a solid of uniform density, under
-    /// gravity and, in each frame, the load of the previous frame. It should weigh no less than the part of
-    /// the deformable that it touches; otherwise use smaller time steps. Other colliders do not stop it.
-    /// @param mass  kg
-    /// @throws Error InvalidOptions when the mass is not positive and finite, the solver is Jakobsen, or
-    /// the collider has no exact map, or that of an open mesh
+    /// Newton: the collider moves freely from its present velocities, as a solid of uniform density. Each
+    /// step solves for its pose together with the deformable, under gravity, contact and friction. Other
+    /// colliders do not stop it. A collider with attached particles is moved by the load of the previous
+    /// frame instead.
+    /// @param mass  kg, 1e-9 to 1e15
+    /// @throws Error InvalidOptions when the mass is out of range, the solver is Jakobsen, or the collider
+    /// has no exact map, or that of an open mesh
     void set_collider_free(std::size_t collider_index, double mass);
 
     /// Newton: moves colliders, the deformable or both elsewhere, at once if the teleport's time has come,

@@ -216,8 +216,15 @@ std::uint32_t NewtonSolver::part_count() {
     return static_cast<std::uint32_t>(std::clamp(parts, 1.0, double{threshold::kMostPartsOfFrame}));
 }
 
-/// @return whether colliders that move could carry what is near them so far. If not, nothing has changed, and
-/// a smaller part is to be tried; the least one is always made
+/// Vertices of a collider that deforms do not go back.
+bool NewtonSolver::can_be_halved(float share) const {
+    return options.surface_collision && share > threshold::kLeastPartToMove &&
+           std::none_of(deformations_.begin(), deformations_.end(),
+                        [](const Deformation& deformation) { return deformation.motion != nullptr; });
+}
+
+/// @return whether colliders that move could carry what is near them so far, and anything could move. If not,
+/// nothing has changed, and a smaller part is to be tried; the least one is always made
 bool NewtonSolver::step_part(const FramePart& part) {
     const float share = part.end - part.begin;
     const double seconds = options.time_step * double{share};
@@ -242,7 +249,10 @@ bool NewtonSolver::step_part(const FramePart& part) {
     step_.begin(motion_, accelerations_, is_held_, seconds, options.air_drag,
                 {Places(from).subspan(count), Places(led).subspan(count)});
     step_.calm(from, places, workers_);
-    minimise(places, seconds);
+    if (!minimise(places, from, seconds, !can_be_halved(share))) {
+        colliders = colliders_before_;
+        return false;
+    }
     const ScratchVector<Vec3d> velocities_before(motion_.velocities.begin(), motion_.velocities.end(),
                                                  workers_.scratch());
     const ScratchVector<std::uint8_t> nothing_touches(contacts_ ? 0 : places.size(), workers_.scratch());
@@ -317,7 +327,9 @@ ScratchVector<Vec3d> NewtonSolver::guess(std::span<const Vec3d> start, double se
     return places;
 }
 
-void NewtonSolver::minimise(std::span<Vec3d> places, double seconds) {
+/// @param from  where the step begins @param may_stop  whether the step counts where nothing can move
+/// @return whether it does
+bool NewtonSolver::minimise(std::span<Vec3d> places, Places from, double seconds, bool may_stop) {
     const std::uint32_t newton_steps = options.newton_step_count;
     StepBudget budget;
     budget.tolerance = options.newton_tolerance * mean_edge_;
@@ -325,7 +337,7 @@ void NewtonSolver::minimise(std::span<Vec3d> places, double seconds) {
         const Stopwatch stopwatch(profile.constraint_seconds);
         budget.newton_steps = newton_steps;
         step_.solve(places, nullptr, budget, workers_);
-        return;
+        return true;
     }
     const auto contact = [&](const auto& work) {
         const Stopwatch stopwatch(profile.collision_seconds);
@@ -334,6 +346,7 @@ void NewtonSolver::minimise(std::span<Vec3d> places, double seconds) {
     const auto energy = [&](Places at) { return step_.energy(at, &contacts_->energy(), workers_); };
     contact([&] { contacts_->begin_step(colliders, start_, places, is_held_, seconds, workers_); });
     budget.newton_steps = 1;
+    std::size_t stopped = 0;
     for (std::uint32_t newton = 0; newton < newton_steps; ++newton) {
         double last_move = 0;
         bool is_balanced = false;
@@ -343,13 +356,16 @@ void NewtonSolver::minimise(std::span<Vec3d> places, double seconds) {
             is_balanced = step_.balance(places, contacts_->energy(),
                                         threshold::kBodyTolerance * budget.tolerance, workers_);
         }
-        std::size_t stopped = 0;
         contact([&] { stopped = contacts_->advance(places, energy, workers_); });
-        if (newton + 1 == newton_steps) profile.truncated_count += stopped;
         if (newton + 1 == newton_steps || (last_move < budget.tolerance && stopped == 0 && is_balanced))
             break;
         contact([&] { contacts_->renew(); });
     }
+    if (stopped > 0 && !may_stop && std::equal(places.begin(), places.end(), from.begin())) {
+        contacts_->cancel_step();
+        return false;
+    }
+    profile.truncated_count += stopped;
     contact([&] {
         contacts_->put_outside(places, energy, workers_);
         contacts_->end_step(places);
@@ -359,6 +375,7 @@ void NewtonSolver::minimise(std::span<Vec3d> places, double seconds) {
     });
     profile.contact_count += contacts_->pushing_count(places);
     profile.measured_pair_count += contacts_->pair_count();
+    return true;
 }
 
 double NewtonSolver::fastest() const {

@@ -89,6 +89,57 @@ TEST(FreeCollider, KeepsItsAngularMomentumAsItTumbles) {
     EXPECT_TRUE(has_turned_over);
 }
 
+TEST(FreeCollider, KeepsItsEnergyAsALongRodTumbles) {
+    const Vec3d size{0.8, 0.01, 0.01};
+    Collider rod{.map = ExactMap::build(make_box(size)), .angular_velocity = {8, 3, 5}};
+    Simulation simulation(sheet_at(50, 1, 3), {rod}, without_forces());
+    simulation.set_collider_free(0, 12);
+    const auto energy = [&] {
+        const Collider& now = simulation.colliders()[0];
+        const Vec3d spin = now.pose.rotation.inverse().apply(now.angular_velocity);
+        const Vec3d sq{size.x * size.x, size.y * size.y, size.z * size.z};
+        return (spin.x * spin.x * (sq.y + sq.z) + spin.y * spin.y * (sq.x + sq.z) +
+                spin.z * spin.z * (sq.x + sq.y)) /
+               2;
+    };
+    simulation.step();
+    const double before = energy();
+    for (int i = 0; i < 300; ++i) {
+        simulation.step();
+        ASSERT_NEAR(energy(), before, 0.02 * before) << i;
+    }
+}
+
+TEST(FreeCollider, ChangesNothingFarAwayHoweverHeavyItIs) {
+    Deformable sheet = sheet_at(0, 1, 21);
+    for (std::uint32_t i = 0; i < 21; ++i)
+        for (const std::uint32_t pin : {i, 20 * 21 + i, 21 * i, 21 * i + 20}) sheet.inverse_masses[pin] = 0;
+    const auto fall = [&](double far_mass) {
+        Collider ball{.map = ExactMap::build(make_sphere(0.12, 32, 16)), .pose = {{}, {0, 0, 0.2}}};
+        Collider far = ball;
+        far.pose.translation = {50, 0, 0};
+        Simulation simulation(sheet, {ball, far}, beside_free_models());
+        simulation.set_collider_free(0, 0.02);
+        simulation.set_collider_free(1, far_mass);
+        for (int i = 0; i < 40; ++i) simulation.step();
+        return simulation.colliders()[0].pose.translation.z;
+    };
+    EXPECT_NEAR(fall(1e4), fall(0.01), 0.002);
+}
+
+TEST(FreeCollider, FallsFromCloseToClothThatIsCloseToATable) {
+    SimulationOptions options = beside_free_models();
+    options.thickness = 0.001;
+    options.time_step = 1.0 / 30;
+    Simulation simulation(sheet_at(0.006, 1, 31),
+                          {{.map = ExactMap::build(make_box({0.1, 0.1, 0.1})), .pose = {{}, {0, 0, 0.059}}},
+                           {.map = ExactMap::build(make_box({4, 4, 0.1})), .pose = {{}, {0, 0, -0.05}}}},
+                          options);
+    simulation.set_collider_free(0, 1);
+    for (int i = 0; i < 30; ++i) simulation.step();
+    EXPECT_NEAR(simulation.colliders()[0].pose.translation.z, 0.052, 0.001);
+}
+
 TEST(FreeCollider, ExchangesMomentumWithTheClothThatHitsIt) {
     // A sheet of 0.05 kg flies at 3 m/s at a ball of 0.2 kg, beside its centre.
     constexpr double kRadius = 0.2, kMass = 0.2, kDensity = 0.2;

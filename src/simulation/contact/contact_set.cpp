@@ -99,7 +99,50 @@ void ContactSet::begin_step(double step, std::span<const std::optional<FrameChan
     }
     index_bristles();
     find_patches();
+    find_borne();
     clear();
+}
+
+void ContactSet::cancel_step(std::span<const std::optional<FrameChange>> frames) {
+    for (Bristle& bristle : bristles_) {
+        const auto& frame = frames[bristle.key.obstacle];
+        bristle.normal = turned_to_local(frame, bristle.normal);
+        bristle.friction = turned_to_local(frame, bristle.friction);
+    }
+    clear();
+}
+
+void ContactSet::set_free_bodies(std::vector<double> masses, std::span<const std::uint32_t> bodies) {
+    free_masses_ = std::move(masses);
+    bodies_.assign(bodies.begin(), bodies.end());
+    borne_.assign(bodies.size(), 0);
+}
+
+/// What a free body lies on bears it as well, layer by layer.
+void ContactSet::find_borne() {
+    if (free_masses_.empty()) return;
+    std::fill(borne_.begin(), borne_.end(), 0);
+    for (bool is_any_new = true; is_any_new;) {
+        is_any_new = false;
+        for (const Bristle& bristle : bristles_) {
+            const bool is_own = bristle.key.obstacle >= impulses_.size();
+            double& first = borne_[bodies_[bristle.key.points.front()]];
+            double& second = is_own ? borne_[bodies_[bristle.key.points.back()]] : first;
+            const double most = std::max({first, second, is_own ? 0 : free_masses_[bristle.key.obstacle]});
+            is_any_new = is_any_new || first < most || second < most;
+            first = second = most;
+        }
+    }
+}
+
+/// The mass of the heaviest free body that this contact may have to bear alone. One that grew only as a body
+/// came to lie on it would be weaker before the body than behind it, and roll it on.
+double ContactSet::borne_by(const Contact& contact) const {
+    if (free_masses_.empty()) return 0;
+    const double of_first = borne_[bodies_[contact.key.points.front()]];
+    return std::max(of_first, contact.key.obstacle < impulses_.size()
+                                  ? free_masses_[contact.key.obstacle]
+                                  : borne_[bodies_[contact.key.points.back()]]);
 }
 
 void ContactSet::index_bristles() {
@@ -147,7 +190,7 @@ double ContactSet::barrier_force(const Contact& contact, const Bristle& before) 
         contact.mobility;
     const double of_push =
         std::min(before.push * threshold::kBarrierOfPush, before.force * threshold::kMostBarrierGrowth);
-    return std::max({of_weight, threshold::kBarrierOfPush * heaviest_,
+    return std::max({of_weight, threshold::kBarrierOfPush * gravity_ * borne_by(contact),
                      std::min(of_push, threshold::kMostBarrierStrain / contact.yielding)});
 }
 

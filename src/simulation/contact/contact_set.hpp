@@ -55,9 +55,9 @@ class ContactSet : public ContactEnergy {
     ContactSet(std::size_t particle_count, std::size_t obstacle_count, std::size_t collider_count,
                double gravity);
 
-    /// Of the free bodies. Each contact could bear the heaviest alone: one that grew as a body comes to lie
-    /// on it would be weaker before the body than behind it, and roll it on.
-    void set_heaviest(double mass) { heaviest_ = gravity_ * mass; }
+    /// @param masses  [obstacle] of free bodies; 0 of all others @param bodies  [particle] the first one of
+    /// its body
+    void set_free_bodies(std::vector<double> masses, std::span<const std::uint32_t> bodies);
 
     /// Begins a frame of one step or more, whose loads are summed.
     void begin_frame();
@@ -72,6 +72,8 @@ class ContactSet : public ContactEnergy {
     void begin_step(double step, std::span<const std::optional<FrameChange>> frames);
     /// Forgets the contacts, not the bristles.
     void clear() { contacts_.clear(); }
+    /// The step that has begun is not made: all is as it was before. @param frames  as it began
+    void cancel_step(std::span<const std::optional<FrameChange>> frames);
     /// @param start  the sum of weight * place where the step began, taken along with the obstacle
     /// @param gap  whose normal force limits its friction; none: that of the step before does
     void add(const Contact& contact, const Vec3d& start, std::optional<double> gap);
@@ -129,20 +131,26 @@ class ContactSet : public ContactEnergy {
     void record(const Held& contact, Places places, double push, const Vec3d& friction);
     void index_bristles();
     void find_patches();
+    void find_borne();
+    double borne_by(const Contact& contact) const;
     Patch& patch_at(std::uint32_t particle, std::uint32_t obstacle, const Vec3d& normal);
     double gap_of(const Held& contact, Places places) const;
     Vec3d slip_of(const Held& contact, Places places) const;
     Vec3d held_slip(const Held& contact, Places places) const;
     Vec3d point_of(const Held& contact, Places places) const;
 
-    double gravity_, step_ = 0, heaviest_ = 0;
+    double gravity_, step_ = 0;
     std::size_t obstacle_count_;
     std::vector<Held> contacts_;
     std::vector<Bristle> bristles_;            ///< of the step before, by key
     std::vector<std::uint32_t> first_bristle_; ///< [particle count + 1] those whose first point it is
     std::vector<std::uint32_t> first_patch_;   ///< [particle] into patches_
     std::vector<Patch> patches_;               ///< in this step
-    std::vector<Impulse> impulses_;            ///< by collider, in this frame
+    std::vector<double> free_masses_;          ///< [obstacle] none where there are no free bodies
+    std::vector<std::uint32_t> bodies_;        ///< [particle] the same
+    std::vector<double> borne_;     ///< [body, by its first particle] mass of the heaviest free body
+                                    ///< that contacts of the last step connect with it
+    std::vector<Impulse> impulses_; ///< by collider, in this frame
     /// A contact in one step of the frame.
     struct Recorded {
         ContactKey key;

@@ -117,9 +117,9 @@ SurfaceContacts::SurfaceContacts(const Deformable& deformable, const std::vector
 void SurfaceContacts::set_free_bodies(std::vector<FreeBody> free_bodies, std::span<const double> masses,
                                       std::span<const std::uint32_t> bodies) {
     free_bodies_ = std::move(free_bodies);
-    double heaviest = 0;
-    for (const FreeBody& body : free_bodies_) heaviest = std::max(heaviest, body.mass());
-    contacts_.set_heaviest(heaviest);
+    std::vector<double> free_masses(free_bodies_.empty() ? 0 : collider_count_);
+    for (const FreeBody& body : free_bodies_) free_masses[body.collider()] = body.mass();
+    contacts_.set_free_bodies(std::move(free_masses), bodies);
     masses_.assign(masses.begin(), masses.end());
     bodies_.assign(bodies.begin(), bodies.end());
     is_touching_.assign(masses.size(), 0);

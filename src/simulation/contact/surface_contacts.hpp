@@ -97,6 +97,8 @@ class SurfaceContacts {
     /// @param held_by  [particle] the collider that holds it, or kNoObstacle
     void add_loads(Places places, std::span<const Vec3d> forces, std::span<const std::uint32_t> held_by,
                    const Workers& workers);
+    /// The step that has begun is not made.
+    void cancel_step() { contacts_.cancel_step(frames_); }
     /// The friction that this step has left in contacts stays for the next.
     void end_step(Places places);
 

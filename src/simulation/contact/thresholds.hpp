@@ -12,8 +12,8 @@ namespace echinus::threshold {
 /// 0.77 of the thickness wide, under ten 0.4. More makes contacts wider and stiffer.
 inline constexpr double kBarrierWeights = 5;
 /// Force of a barrier over what its contact pushed with in the step before, where that is more, and over the
-/// weight of the heaviest free body; so a contact that carries much is 0.4 of the thickness wide, too. And by
-/// what it may grow in a step: more lifts what is suddenly loaded faster than is quiet.
+/// weight of the heaviest free body that lies on it; so a contact that carries much is 0.4 of the thickness
+/// wide, too. And by what it may grow in a step: more lifts what is suddenly loaded faster than is quiet.
 inline constexpr double kBarrierOfPush = 0.5, kMostBarrierGrowth = 1.5;
 /// Strain of the material that the scale of such a barrier would cause, at most: between two plates that
 /// leave too little room push and barrier would otherwise raise each other without bound.
@@ -84,6 +84,9 @@ inline constexpr std::uint32_t kMostPartsOfFrame = 32;
 /// Of a frame: a part in which colliders cannot carry what is near them is halved, so that it can give way
 /// meanwhile, down to this. Less holds harder squeezes, and takes more time in them.
 inline constexpr float kLeastPartOfFrame = 1.0F / 64;
+/// Of a frame: a part in which what is stopped leaves nothing that can move is halved down to this. Less
+/// takes more time where there is no room.
+inline constexpr float kLeastPartToMove = 1.0F / 16;
 /// Displacements of the fastest particle in a frame: how far off vertices of a collider that deforms may be
 /// to decide about the division.
 inline constexpr double kDecidingRoom = 2;

@@ -40,6 +40,7 @@ class RigidBody {
 
   private:
     Vec3d angular_velocity(const Rotation& rotation) const;
+    Rotation turned(Rotation rotation, double seconds) const;
 
     double mass_ = 1;
     Vec3d centre_;                                       ///< of mass, in the body frame
