@@ -51,5 +51,5 @@ TEST_F(Garment, OfAShirtAndASkirtIsSewnAllRoundAndTouchesItselfNowhere) {
 }
 
 TEST_F(Garment, MakesTheFlagOfTheSceneThatShips) {
-    EXPECT_EQ(bytes_of(make("flag --spacing 0.07")), bytes_of(kSource / "scenes" / "flag.obj"));
+    EXPECT_EQ(bytes_of(make("flag --spacing 0.07")), bytes_of(kSource / "scenes" / "meshes" / "flag.obj"));
 }
