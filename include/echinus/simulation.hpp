@@ -212,8 +212,8 @@ struct SimulationOptions {
     /// it; a value between 1 and 2 overshoots, which propagates tension farther per relaxation.
     std::array<double, kStickKindCount> stiffness{1, 1, 0.3};
     ClothMaterial material{}; ///< Newton only
-    /// Newton: largest number of steps of Newton's method in each frame or substep; fewer are taken if it
-    /// converges. Fewer than two leave contacts unresolved.
+    /// Newton: largest number of steps of Newton's method in each frame or substep, and twice as many while
+    /// nothing touches; fewer are taken if it converges. Fewer than two leave contacts unresolved.
     std::uint32_t newton_step_count = 4;
     /// Newton: tolerance of Newton's method, relative to the mean edge length. It has converged if the
     /// decrease of the energy corresponds to a root-mean-square displacement of at most this length.

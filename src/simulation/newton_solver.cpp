@@ -330,12 +330,13 @@ ScratchVector<Vec3d> NewtonSolver::guess(std::span<const Vec3d> start, double se
 /// @param from  where the step begins @param may_stop  whether the step counts where nothing can move
 /// @return whether it does
 bool NewtonSolver::minimise(std::span<Vec3d> places, Places from, double seconds, bool may_stop) {
-    const std::uint32_t newton_steps = options.newton_step_count;
+    const std::uint32_t steps_in_contact = options.newton_step_count;
+    const std::uint32_t steps_without = threshold::kStepsWithoutContact * steps_in_contact;
     StepBudget budget;
     budget.tolerance = options.newton_tolerance * mean_edge_;
     if (!contacts_) {
         const Stopwatch stopwatch(profile.constraint_seconds);
-        budget.newton_steps = newton_steps;
+        budget.newton_steps = steps_without;
         step_.solve(places, nullptr, budget, workers_);
         return true;
     }
@@ -347,7 +348,7 @@ bool NewtonSolver::minimise(std::span<Vec3d> places, Places from, double seconds
     contact([&] { contacts_->begin_step(colliders, start_, places, is_held_, seconds, workers_); });
     budget.newton_steps = 1;
     std::size_t stopped = 0;
-    for (std::uint32_t newton = 0; newton < newton_steps; ++newton) {
+    for (std::uint32_t newton = 1;; ++newton) {
         double last_move = 0;
         bool is_balanced = false;
         {
@@ -357,8 +358,8 @@ bool NewtonSolver::minimise(std::span<Vec3d> places, Places from, double seconds
                                         threshold::kBodyTolerance * budget.tolerance, workers_);
         }
         contact([&] { stopped = contacts_->advance(places, energy, workers_); });
-        if (newton + 1 == newton_steps || (last_move < budget.tolerance && stopped == 0 && is_balanced))
-            break;
+        const bool has_converged = last_move < budget.tolerance && stopped == 0 && is_balanced;
+        if (has_converged || newton >= (contacts_->has_contacts() ? steps_in_contact : steps_without)) break;
         contact([&] { contacts_->renew(); });
     }
     if (stopped > 0 && !may_stop && std::equal(places.begin(), places.end(), from.begin())) {

@@ -101,11 +101,11 @@ int report(const Result& result, bool json) {
     return result.holds() ? 0 : kFailed;
 }
 
-int run(int argc, char** argv) {
+int run(const std::vector<std::string>& words) {
     Program program("echinus-check", "Judges exact maps and recorded cloth by CGAL's exact predicates.");
     Arguments arguments;
     add_options(program.command(), arguments);
-    if (const std::optional<std::string> help = program.run(argc, argv)) {
+    if (const std::optional<std::string> help = program.run(words)) {
         fmt::print("{}", *help);
         return 0;
     }
@@ -126,7 +126,7 @@ int fail(const char* sentence, int status) {
 
 int main(int argc, char** argv) {
     try {
-        return run(argc, argv);
+        return run({argv + 1, argv + argc});
     } catch (const WrongUse& error) {
         return fail((std::string(error.what()) + "; see echinus-check --help").c_str(), kWrongUse);
     } catch (const Error& error) {

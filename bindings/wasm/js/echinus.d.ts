@@ -653,8 +653,8 @@ export interface SceneDescription {
      */
     iterations?: number;
     /**
-     * `newton` only: the largest number of steps of Newton's method per frame; fewer are taken if it converges (1 to
-     * 1000). Default: 4.
+     * `newton` only: the largest number of steps of Newton's method per frame, and twice as many while nothing touches;
+     * fewer are taken if it converges (1 to 1000). Default: 4.
      */
     newton_steps?: number;
     /**

@@ -72,6 +72,7 @@ class ContactSet : public ContactEnergy {
     void begin_step(double step, std::span<const std::optional<FrameChange>> frames);
     /// Forgets the contacts, not the bristles.
     void clear() { contacts_.clear(); }
+    bool empty() const { return contacts_.empty(); }
     /// The step that has begun is not made: all is as it was before. @param frames  as it began
     void cancel_step(std::span<const std::optional<FrameChange>> frames);
     /// @param start  the sum of weight * place where the step began, taken along with the obstacle

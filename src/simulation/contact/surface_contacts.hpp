@@ -104,6 +104,8 @@ class SurfaceContacts {
 
     /// Of contacts and friction, as pairs were measured last.
     const ContactEnergy& energy() const { return contacts_; }
+    /// Is anything near enough to touch?
+    bool has_contacts() const { return !contacts_.empty(); }
 
     std::size_t pushing_count(Places places) const { return contacts_.pushing_count(places); }
     std::size_t pair_count() const;
