@@ -282,9 +282,9 @@ struct ContactPoint {
     /// In place of the number of a collider or of a particle.
     static constexpr std::uint32_t kNone = 0xFFFFFFFF;
 
-    Vec3d position;         ///< on the deformable, at the end of the frame; world coordinates
+    Vec3d position;         ///< on the deformable, when it pushed last in the frame; world coordinates
     Vec3d normal;           ///< unit, towards the deformable; towards its first part where both are its own
-    double gap;             ///< at the end of the frame; positive, less than the thickness
+    double gap;             ///< when it pushed last; positive
     double normal_impulse;  ///< on the deformable (its first part) along the normal in the frame, N s
     Vec3d friction_impulse; ///< the same across the normal, N s
     std::uint32_t collider; ///< kNone: the contact is of the deformable with itself
@@ -369,9 +369,9 @@ class Simulation {
     /// then the energy is minimised, and every step towards the minimum is limited so that faces stay apart:
     /// when a frame ends, no face intersects a collider or, with options.self_collision, another face.
     /// docs/limits.md lists the limits; squeezed_count counts most of the cases in which they were exceeded.
-    /// A frame in which a collider moves far is divided into up to 32 substeps. Memory is kept from frame to
-    /// frame: a frame that needs no more than the previous ones allocates nothing, except for the maps of
-    /// deforming colliders.
+    /// A frame in which a collider moves far, or nothing finds room to move, is divided into up to 64
+    /// substeps. Memory is kept from frame to frame: a frame that needs no more than the previous ones
+    /// allocates nothing, except for the maps of deforming colliders.
     ///
     /// Jakobsen: a frame consists of Verlet integration with drag, the motion of the colliders,
     /// iteration_count relaxations of all distance constraints and all collisions of particles with
@@ -492,8 +492,8 @@ class Simulation {
     /// then costs nothing. It is not part of a saved state.
     void record_contacts(bool is_on);
     /// The contacts that were recorded in the last frame, in unspecified order; valid until the next frame.
-    /// Their impulses divided by the time step sum to load_on() of each collider, except for the loads of
-    /// attached particles and of particles that a collider stopped before contact could
+    /// Their impulses divided by the time step sum to the opposite of load_on() of each collider, except for
+    /// the loads of attached particles and of particles that a collider stopped before contact could
     /// (SimulationProfile::truncated_count). Empty under Jakobsen.
     std::span<const ContactPoint> contact_points() const;
 

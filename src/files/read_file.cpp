@@ -11,6 +11,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 
 namespace echinus {
 
@@ -99,6 +100,7 @@ RandomAccessFile::RandomAccessFile(const std::filesystem::path& path) : path_(pa
     if (size) {
         size_ = *size;
     } else {
+        if (descriptor_ >= 0) system::close(std::exchange(descriptor_, -1));
         copy_ = read_file(path);
         size_ = copy_.size();
     }

@@ -150,9 +150,10 @@ bool replace_open_file(const fs::path& target, const fs::path& file) {
     constexpr DWORD kReplaceIfExists = 1, kPosixSemantics = 2;
     std::error_code error;
     const std::wstring name = fs::absolute(target, error).native();
+    if (error) return false;
     const HANDLE handle =
         CreateFileW(file.c_str(), DELETE | SYNCHRONIZE, kShared, nullptr, OPEN_EXISTING, 0, nullptr);
-    if (error || handle == INVALID_HANDLE_VALUE) return false;
+    if (handle == INVALID_HANDLE_VALUE) return false;
     const std::size_t name_bytes = name.size() * sizeof(wchar_t);
     std::vector<std::byte> bytes(sizeof(RenameInfo) + name_bytes);
     auto& info = *new (bytes.data()) RenameInfo{};

@@ -21,7 +21,7 @@ inline constexpr double kEnergyRounding = 1e-11;
 inline constexpr std::uint32_t kMostHalvingsOfGuess = 24;
 /// Newton's steps of a frame without contact, at most, over those with: without, the method converges
 /// quadratically, and a stiff sheet that swings needs up to eight; in folds it converges linearly, and more
-/// buy little.
+/// steps gain little.
 inline constexpr std::uint32_t kStepsWithoutContact = 2;
 /// Share of the tolerance of particles that the displacements of whole bodies have. More leaves more of the
 /// forces on a body as momentum.
@@ -29,10 +29,13 @@ inline constexpr double kBodyTolerance = 0.1;
 /// Newton's steps in the translations of whole bodies, after each of all particles. Fewer leave momentum.
 inline constexpr std::uint32_t kMostBalancingSteps = 8;
 
-/// Stiffness of a free collider's tetrahedron over mass size^2 / h^2, the resistance of its inertia in a
-/// step. At an impact its control points stray from their pose by this share of what they go in a step. More
-/// makes the linear systems worse conditioned.
+/// Stiffness of a free body's tetrahedron over mass size^2 / h^2, the resistance of its inertia in a frame.
+/// At an impact its control points stray from their rigid places by the inverse of this share of what they go
+/// in a frame. More makes the linear systems worse conditioned.
 inline constexpr double kBodyStiffness = 1e3;
+/// Radians by which a free body turns in one round of turns about its principal axes, at most; the error
+/// grows with the square. And rounds in a step: what spins faster turns farther in each.
+inline constexpr double kLongestTurn = 0.1, kMostTurns = 64;
 
 // ---- The materials ----
 

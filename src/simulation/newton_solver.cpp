@@ -130,6 +130,7 @@ void NewtonSolver::end_step_of(const FreeBody& body, double seconds) {
     collider.pose = body.safe_pose;
     rigid.push(collider.pose, body.load(led, seconds), options.gravity, seconds);
     rigid.give_velocities(collider);
+    contacts_->particles().end_move(body.collider(), collider);
 }
 
 void NewtonSolver::step() {
@@ -228,6 +229,7 @@ bool NewtonSolver::can_be_halved(float share) const {
 bool NewtonSolver::step_part(const FramePart& part) {
     const float share = part.end - part.begin;
     const double seconds = options.time_step * double{share};
+    const std::size_t unresolved_count = contacts_ ? contacts_->unresolved_count() : 0;
     colliders_before_ = colliders;
     for (std::size_t c = 0; c < colliders.size(); ++c) colliders[c].pose = pose_without_contact(c, seconds);
     if (!find_start(part, share <= threshold::kLeastPartOfFrame)) {
@@ -249,7 +251,8 @@ bool NewtonSolver::step_part(const FramePart& part) {
     step_.begin(motion_, accelerations_, is_held_, seconds, options.air_drag,
                 {Places(from).subspan(count), Places(led).subspan(count)});
     step_.calm(from, places, workers_);
-    if (!minimise(places, from, seconds, !can_be_halved(share))) {
+    if (!minimise(places, seconds, !can_be_halved(share))) {
+        contacts_->cancel_step(unresolved_count);
         colliders = colliders_before_;
         return false;
     }
@@ -327,9 +330,9 @@ ScratchVector<Vec3d> NewtonSolver::guess(std::span<const Vec3d> start, double se
     return places;
 }
 
-/// @param from  where the step begins @param may_stop  whether the step counts where nothing can move
-/// @return whether it does
-bool NewtonSolver::minimise(std::span<Vec3d> places, Places from, double seconds, bool may_stop) {
+/// @param may_stop  whether a step in which nothing can move is accepted
+/// @return whether the step is
+bool NewtonSolver::minimise(std::span<Vec3d> places, double seconds, bool may_stop) {
     const std::uint32_t steps_in_contact = options.newton_step_count;
     const std::uint32_t steps_without = threshold::kStepsWithoutContact * steps_in_contact;
     StepBudget budget;
@@ -362,10 +365,7 @@ bool NewtonSolver::minimise(std::span<Vec3d> places, Places from, double seconds
         if (has_converged || newton >= (contacts_->has_contacts() ? steps_in_contact : steps_without)) break;
         contact([&] { contacts_->renew(); });
     }
-    if (stopped > 0 && !may_stop && std::equal(places.begin(), places.end(), from.begin())) {
-        contacts_->cancel_step();
-        return false;
-    }
+    if (stopped > 0 && !may_stop && !contacts_->has_moved()) return false;
     profile.truncated_count += stopped;
     contact([&] {
         contacts_->put_outside(places, energy, workers_);

@@ -47,7 +47,7 @@ class NewtonSolver : public Solver {
     bool find_start(const FramePart& part, bool is_least);
     ScratchVector<Vec3d> exact_start() const;
     ScratchVector<Vec3d> guess(std::span<const Vec3d> start, double seconds) const;
-    bool minimise(std::span<Vec3d> places, Places from, double seconds, bool may_stop);
+    bool minimise(std::span<Vec3d> places, double seconds, bool may_stop);
     bool can_be_halved(float share) const;
     void publish();
     void publish_places();

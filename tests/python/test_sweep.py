@@ -173,7 +173,7 @@ def option_cases():
 
 def test_everything_public_is_called_below_the_way_it_suits():
     classes_of_answers = {
-        "AnyMap", "BoundaryDistance", "ColliderState", "Contacts", "DistanceMapStatistics", "ErrorCode", "ExactMapStatistics", "Fault",
+        "AnyMap", "BoundaryDistance", "ColliderState", "ContactPoints", "Contacts", "DistanceMapStatistics", "ErrorCode", "ExactMapStatistics", "Fault",
         "Load", "MeshLike", "MeshReport", "RepairReport", "SimulationOptions", "SimulationProfile", "SweepHits", "TetrahedraFile",
         "Tetrahedralization", "TetrahedralReport",
     }  # fmt: skip

@@ -84,11 +84,11 @@ class ContactPoints(NamedTuple):
     Attributes
     ----------
     positions
-        [contact, 3] on the deformable, at the end of the frame; world coordinates.
+        [contact, 3] on the deformable, when it pushed last in the frame; world coordinates.
     normals
         [contact, 3] unit, towards the deformable; towards its first part where both are its own.
     gaps
-        [contact] at the end of the frame; positive.
+        [contact] when it pushed last; positive.
     normal_impulses
         [contact] on the deformable (its first part) along the normal in the frame, N s.
     friction_impulses

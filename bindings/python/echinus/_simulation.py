@@ -513,7 +513,7 @@ class Simulation:
     def contact_points(self) -> ContactPoints:
         """The contacts that were recorded in the last frame, as arrays that are copies.
 
-        Their impulses divided by the time step sum to :meth:`load_on` of each model, except for the loads of attached
+        Their impulses divided by the time step sum to the opposite of :meth:`load_on` of each model, except for the loads of attached
         particles and of truncated ones. None under ``jakobsen``.
         """
         return ContactPoints(*self._simulation.contact_points())

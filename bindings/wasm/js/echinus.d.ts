@@ -859,7 +859,7 @@ export class Simulation extends Deletable {
     /**
      * Moves a collider, the first by default, freely from its present velocities: a rigid body of uniform density, moved
      * by gravity and by contact with the cloth. Needs an exact map of a closed mesh and the solver `newton`.
-     * @param mass  kg, positive
+     * @param mass  kg, 1e-9 to 1e15
      * @throws InvalidOptions; then nothing has changed
      */
     setColliderFree(mass: number, index?: number): void;
@@ -906,11 +906,11 @@ export class Simulation extends Deletable {
 
 /** The contacts that pushed in a frame: of the cloth with colliders and with itself. */
 export interface ContactPoints {
-    /** [3 count] on the cloth, at the end of the frame; world coordinates. */
+    /** [3 count] on the cloth, when it pushed last in the frame; world coordinates. */
     readonly positions: Float64Array;
     /** [3 count] unit, towards the cloth; towards its first part where both are its own. */
     readonly normals: Float64Array;
-    /** [count] at the end of the frame. */
+    /** [count] when it pushed last. */
     readonly gaps: Float64Array;
     /** [count] on the cloth (its first part) along the normal in the frame, N s. */
     readonly normalImpulses: Float64Array;

@@ -135,8 +135,8 @@ void ContactSet::find_borne() {
     }
 }
 
-/// The mass of the heaviest free body that this contact may have to bear alone. One that grew only as a body
-/// came to lie on it would be weaker before the body than behind it, and roll it on.
+/// The mass of the heaviest free body that this contact may have to bear alone. One that grew only once a
+/// body lay on it would be weaker in front of the body than behind it, and roll it on.
 double ContactSet::borne_by(const Contact& contact) const {
     if (free_masses_.empty()) return 0;
     const double of_first = borne_[bodies_[contact.key.points.front()]];
@@ -389,13 +389,18 @@ void ContactSet::archive(StateArchive& state) {
         state.value(impulse.angular);
     }
     if (!state.reads()) return;
+    recorded_.clear();
+    points_.clear();
     state.require(std::is_sorted(bristles_.begin(), bristles_.end(), [](const Bristle& a, const Bristle& b) {
         return a.key.order() < b.key.order();
     }));
     const std::size_t particle_count = first_patch_.size();
     for (const Bristle& bristle : bristles_)
-        for (std::size_t k = 0; k < 4; ++k)
-            state.require((k > 0 && bristle.weights[k] == 0) || bristle.key.points[k] < particle_count);
+        for (std::size_t k = 0; k < 4; ++k) {
+            const bool is_unused =
+                k > 0 && bristle.key.obstacle < impulses_.size() && bristle.weights[k] == 0;
+            state.require(is_unused || bristle.key.points[k] < particle_count);
+        }
 }
 
 } // namespace echinus

@@ -73,7 +73,8 @@ class ContactSet : public ContactEnergy {
     /// Forgets the contacts, not the bristles.
     void clear() { contacts_.clear(); }
     bool empty() const { return contacts_.empty(); }
-    /// The step that has begun is not made: all is as it was before. @param frames  as it began
+    /// Undoes begin_step(), up to rounding of the bristles' directions. @param frames  those that it was
+    /// given
     void cancel_step(std::span<const std::optional<FrameChange>> frames);
     /// @param start  the sum of weight * place where the step began, taken along with the obstacle
     /// @param gap  whose normal force limits its friction; none: that of the step before does

@@ -60,7 +60,8 @@ FreeBody::FreeBody(std::uint32_t collider, std::uint32_t first_point, const Rigi
       centre_(body.centre()), spread_(lower_root(body.second_moments())) {}
 
 bool FreeBody::is_of(std::uint32_t collider, const RigidBody& body) const {
-    return collider == collider_ && body.mass() == point_mass_ * kPointCount && body.centre() == centre_;
+    return collider == collider_ && body.mass() == point_mass_ * kPointCount && body.centre() == centre_ &&
+           lower_root(body.second_moments()) == spread_;
 }
 
 void FreeBody::add_to(ElasticParts& parts, double time_step) const {

@@ -25,7 +25,7 @@ class FreeBody {
     std::uint32_t collider() const { return collider_; }
     std::uint32_t first_point() const { return first_point_; }
     double mass() const { return kPointCount * point_mass_; }
-    /// Does it represent this collider, with this mass and centre of mass?
+    /// Does it represent this collider, with this mass, centre of mass and inertia?
     bool is_of(std::uint32_t collider, const RigidBody& body) const;
     /// Appends the control points and their tetrahedron.
     /// @param time_step  the longest step, s

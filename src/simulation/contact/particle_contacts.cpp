@@ -39,6 +39,11 @@ void ParticleContacts::move(std::uint32_t collider, const RigidTransform& pose) 
         if (obstacles_[o].number == collider) after_[o].pose = pose;
 }
 
+void ParticleContacts::end_move(std::uint32_t collider, const Collider& after) {
+    for (std::size_t o = 0; o < obstacles_.size(); ++o)
+        if (obstacles_[o].number == collider) after_[o] = after;
+}
+
 void ParticleContacts::Answers::resize(std::size_t count) {
     particles.resize(count);
     colliders.resize(count);

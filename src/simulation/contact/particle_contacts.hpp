@@ -33,6 +33,8 @@ class ParticleContacts {
                     std::span<const std::uint8_t> is_held);
     /// A free body has gone there in the step.
     void move(std::uint32_t collider, const RigidTransform& pose);
+    /// The same when the step ends, with its velocities.
+    void end_move(std::uint32_t collider, const Collider& after);
     /// Adds the contacts at these places. @param strengths, is_solved  as SurfaceContacts::find_contacts()
     void add_to(ContactSet& contacts, Places places, std::span<const double> masses,
                 std::span<const double> strengths, std::span<const FreeBody> free_bodies, bool is_solved);

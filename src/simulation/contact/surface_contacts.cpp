@@ -224,7 +224,7 @@ void SurfaceContacts::begin_step(const std::vector<Collider>& colliders, const P
     }
     for (std::size_t c = 0; c < collider_count_; ++c) frames_[c] = frame_of(colliders[c].pose);
     contacts_.begin_step(step, frames_);
-    is_carried_ = false;
+    is_carried_ = has_moved_ = false;
     is_begun_ = true;
     find_contacts(guess, false);
 }
@@ -370,6 +370,7 @@ std::size_t SurfaceContacts::go_towards(std::span<Vec3d> places, const StepEnerg
             if (energy(places) <= *most_energy) break;
         }
     }
+    has_moved_ = has_moved_ || !std::equal(places.begin(), places.end(), safe_places_.begin());
     std::copy(places.begin(), places.end(), safe_places_.begin());
     for (std::size_t i = 0; i < own_->vertex_count(); ++i) safe_.set(i, Vec3f(places[i]));
     arrive();

@@ -97,8 +97,13 @@ class SurfaceContacts {
     /// @param held_by  [particle] the collider that holds it, or kNoObstacle
     void add_loads(Places places, std::span<const Vec3d> forces, std::span<const std::uint32_t> held_by,
                    const Workers& workers);
-    /// The step that has begun is not made.
-    void cancel_step() { contacts_.cancel_step(frames_); }
+    /// Has any particle or free body moved in this step?
+    bool has_moved() const { return has_moved_; }
+    /// Undoes the beginning of this step. @param unresolved_count  as it was before
+    void cancel_step(std::size_t unresolved_count) {
+        contacts_.cancel_step(frames_);
+        unresolved_count_ = unresolved_count;
+    }
     /// The friction that this step has left in contacts stays for the next.
     void end_step(Places places);
 
@@ -152,7 +157,8 @@ class SurfaceContacts {
     std::vector<float> most_; ///< by vertex: the most thickness that what is around it leaves room for
     std::vector<std::optional<FrameChange>> frames_; ///< by side
     std::span<const std::uint8_t> is_held_;
-    bool is_begun_ = false; ///< has a step begun in which no particle has moved yet?
+    bool has_moved_ = false; ///< in this step
+    bool is_begun_ = false;  ///< has a step begun in which no particle has moved yet?
     float most_missed_ = 0;
     double missed_ = 0;                     ///< how far a particle has ended from its goal, at most
     std::size_t unresolved_ = 0;            ///< of the displacements that were looked at last

@@ -1,5 +1,6 @@
 #include "simulation/motion/rigid_body.hpp"
 
+#include "mechanics/thresholds.hpp"
 #include "simulation/start/validation.hpp"
 
 #include <algorithm>
@@ -65,8 +66,7 @@ RigidBody::RigidBody(const TriangleMesh& surface, double mass, const Collider& c
     inertia_[1].y += trace * density;
     inertia_[2].z += trace * density;
     centre_ = centre + origin;
-    const auto& [x, y, z] = second_moments();
-    require_option(x.x > 0 && x.x * y.y - x.y * x.y > 0 && determinant({x, y, z}) > 0,
+    require_option(has_inertia(),
                    name + " has faces that contradict each other, so it has no inertia; repair the mesh");
     const Rotation& rotation = collider.pose.rotation;
     velocity_ = collider.linear_velocity + cross(collider.angular_velocity, rotation.apply(centre_));
@@ -101,14 +101,13 @@ double RigidBody::left_of(const Vec3d& gravity) const {
 /// back (Strang), each of which keeps the momentum exactly, so that the energy neither grows nor falls in the
 /// long run (McLachlan 1993; Reich 1994).
 Rotation RigidBody::turned(Rotation rotation, double seconds) const {
-    constexpr double kLongestTurn = 0.1; // radians: more errs by its square
-    constexpr double kMostTurns = 64;
     std::array<std::array<double, 3>, 3> inertia{};
     for (std::size_t k = 0; k < 3; ++k) inertia[k] = {inertia_[k].x, inertia_[k].y, inertia_[k].z};
     const Eigensystem principal = eigensystem(inertia);
     const double least = std::min({principal.values[0], principal.values[1], principal.values[2]});
     const double most_turn = length(angular_momentum_) / least * seconds;
-    const double count = std::clamp(std::ceil(most_turn / kLongestTurn), 1.0, kMostTurns);
+    const double count =
+        std::clamp(std::ceil(most_turn / threshold::kLongestTurn), 1.0, threshold::kMostTurns);
     const auto turn_about = [&](std::size_t axis, double share) {
         const double momentum = dot(principal.vectors[axis], rotation.inverse().apply(angular_momentum_));
         const double angle = momentum / principal.values[axis] * (seconds * share / count);
@@ -148,6 +147,12 @@ Matrix3 RigidBody::second_moments() const {
     return moments;
 }
 
+/// Is the matrix of the second moments positive definite?
+bool RigidBody::has_inertia() const {
+    const auto& [x, y, z] = second_moments();
+    return x.x > 0 && x.x * y.y - x.y * x.y > 0 && determinant({x, y, z}) > 0;
+}
+
 bool RigidBody::is_slower_than(double speed) const {
     return length(velocity_) <= speed && length(angular_velocity_) <= speed;
 }
@@ -166,7 +171,7 @@ void RigidBody::archive(StateArchive& state) {
         state.value(*v);
         state.require(is_finite(*v));
     }
-    state.require(mass_ > 0);
+    state.require(mass_ >= kLeastMass && mass_ <= kMostMass && has_inertia());
 }
 
 } // namespace echinus

@@ -41,6 +41,7 @@ class RigidBody {
   private:
     Vec3d angular_velocity(const Rotation& rotation) const;
     Rotation turned(Rotation rotation, double seconds) const;
+    bool has_inertia() const;
 
     double mass_ = 1;
     Vec3d centre_;                                       ///< of mass, in the body frame

@@ -1337,7 +1337,7 @@ ECHINUS_API echinus_status echinus_simulation_load_on(const echinus_simulation* 
 /// The next frames move a collider freely from its present velocities: a rigid body of uniform density, moved
 /// by gravity and by contact with the deformable. Needs an exact map of a closed mesh and
 /// ECHINUS_SOLVER_NEWTON.
-/// @param mass  kg, positive and finite
+/// @param mass  kg, 1e-9 to 1e15
 /// @return ECHINUS_INVALID_OPTIONS; then nothing has changed
 ECHINUS_API echinus_status echinus_simulation_set_collider_free(echinus_simulation* simulation, size_t index,
                                                                 double mass);
@@ -1348,9 +1348,9 @@ ECHINUS_API echinus_status echinus_simulation_set_collider_free(echinus_simulati
 /// A contact that pushed in the last frame, between a particle, edge or face of the deformable and a
 /// collider, or between two elements of the deformable.
 typedef struct echinus_contact_point {
-    double position[3];    ///< on the deformable, at the end of the frame; world coordinates
+    double position[3];    ///< on the deformable, when it pushed last in the frame; world coordinates
     double normal[3];      ///< unit, towards the deformable; towards its first part where both are its own
-    double gap;            ///< at the end of the frame; positive
+    double gap;            ///< when it pushed last; positive
     double normal_impulse; ///< on the deformable (its first part) along the normal in the frame, N s
     double friction_impulse[3]; ///< the same across the normal, N s
     uint32_t collider;          ///< ECHINUS_NONE: the contact is of the deformable with itself
@@ -1363,9 +1363,9 @@ typedef struct echinus_contact_point {
 /// state.
 ECHINUS_API echinus_status echinus_simulation_record_contacts(echinus_simulation* simulation, int32_t is_on);
 
-/// The contacts that were recorded in the last frame. Their impulses divided by the time step sum to the load
-/// on each collider, except for the loads of attached particles and of truncated ones. None under
-/// ECHINUS_SOLVER_JAKOBSEN.
+/// The contacts that were recorded in the last frame. Their impulses divided by the time step sum to the
+/// opposite of the load on each collider, except for the loads of attached particles and of truncated ones.
+/// None under ECHINUS_SOLVER_JAKOBSEN.
 /// @param points  out, echinus_contact_point
 ECHINUS_API echinus_status echinus_simulation_contact_points(const echinus_simulation* simulation,
                                                              echinus_array** points);
