@@ -1337,7 +1337,7 @@ ECHINUS_API echinus_status echinus_simulation_load_on(const echinus_simulation* 
 /// The next frames move a collider freely from its present velocities: a rigid body of uniform density, moved
 /// by gravity and by contact with the deformable. Needs an exact map of a closed mesh and
 /// ECHINUS_SOLVER_NEWTON.
-/// @param mass  kg, 1e-9 to 1e15
+/// @param mass  kg, finite, 1e-9 to 1e15
 /// @return ECHINUS_INVALID_OPTIONS; then nothing has changed
 ECHINUS_API echinus_status echinus_simulation_set_collider_free(echinus_simulation* simulation, size_t index,
                                                                 double mass);
