@@ -230,11 +230,10 @@ describe('A simulation', () => {
         assert.ok(Math.abs(position[2] - 15 * scene.timeStep) < 1e-9);
         assert.ok(Math.abs(rotation[0] - Math.cos(Math.PI / 8)) < 1e-9);
     });
-    test('reports the contacts of a frame, which sum to the load on a free collider', () => {
+    test('reports the contacts of a frame, which sum to the load on a collider, and sets it free', () => {
         const scene = echinus.parseScene(readScene('torus_small.json'));
         const simulation = scene.makeSimulation(scene.buildMap(scene.makeModel()));
-        simulation.setColliderFree(0.5);
-        simulation.step(20);
+        simulation.step(40);
         assert.equal(simulation.contactPoints.gaps.length, 0);
         simulation.recordContacts();
         simulation.step();
@@ -247,6 +246,10 @@ describe('A simulation', () => {
         const { force } = simulation.loadOn();
         assert.ok(force[2] < 0, `${force}`);
         assert.ok(impulses.every((impulse, k) => Math.abs(impulse / scene.timeStep + force[k]) < 0.01 * Math.hypot(...force)), `${impulses} ${force}`);
+        simulation.setColliderFree(0.5);
+        simulation.step(5);
+        assert.ok(simulation.collider.position[2] < 0);
+        assert.throws(() => simulation.setColliderFree(0), /mass of 0/);
     });
     test('continues with other options from its present state', () => {
         const description = { model: { torus: {} }, cloth: { size: [3, 3], particles: [20, 20], position: [0, 0, 0.5] } };
