@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <sstream>
+#include <cstdio>
 #include <string>
 
 namespace echinus {
@@ -46,10 +46,10 @@ Matrix3 inverse(const Matrix3& m) {
 RigidBody::RigidBody(const TriangleMesh& surface, double mass, const Collider& collider,
                      const std::string& name)
     : mass_(mass) {
-    std::ostringstream mass_text;
-    mass_text << mass;
+    std::array<char, 32> mass_text{};
+    std::snprintf(mass_text.data(), mass_text.size(), "%g", mass);
     require_option(mass >= kLeastMass && mass <= kMostMass,
-                   name + " has a mass of " + mass_text.str() + "; it must be from 1e-9 to 1e15 kg");
+                   name + " has a mass of " + mass_text.data() + "; it must be from 1e-9 to 1e15 kg");
     Solid solid;
     const Vec3d origin(surface.vertices.front());
     for (const Triangle& face : surface.faces)
