@@ -53,14 +53,14 @@ std::optional<std::size_t> read_at(int descriptor, std::uint64_t offset, std::sp
 std::span<const std::byte> map(int descriptor, std::size_t byte_count);
 void unmap(std::span<const std::byte> bytes) noexcept;
 
-// ---- What is held: an open file or folder that others can tell from one whose owner has ended ----
+// ---- Held files and folders: open ones that others can tell from one whose owner has ended ----
 
 /// Makes a folder that others cannot read, if it is not there yet.
 bool make_private_folder(const std::filesystem::path& path);
 /// Holds a folder until all copies of the descriptor are closed; -1 also where another process holds it, or
 /// the file system has no locks.
 int hold_folder(const std::filesystem::path& path);
-/// Removes the file or folder unless somebody holds it. What cannot be removed stays.
+/// Removes the file or folder unless somebody holds it. A file that cannot be removed stays.
 void remove_unless_held(const std::filesystem::path& path) noexcept;
 
 // ---- The program ----

@@ -155,7 +155,7 @@ void ImplicitStep::hold(const Workers& workers) {
 }
 
 void ImplicitStep::calm(Places start, std::span<Vec3d> guess, const Workers& workers) {
-    // What moves as a whole goes on.
+    // The motion of a whole body goes on.
     const ScratchVector<Vec3d> common =
         common_displacements(start, guess, masses_, bodies(), is_held_, workers);
     for (std::size_t i = 0; i < guess.size(); ++i) trial_[i] = start[i] + common[bodies()[i]];

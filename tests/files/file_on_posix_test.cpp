@@ -1,4 +1,4 @@
-// What files do on POSIX alone: links, pipes, devices, permissions, limits and processes that are killed.
+// Files as on POSIX alone: links, pipes, devices, permissions, limits and processes that are killed.
 
 #include "files/atomic_file.hpp"
 #include "files/read_file.hpp"

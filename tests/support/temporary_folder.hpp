@@ -1,5 +1,7 @@
 #pragma once
 
+#include "files/utf8_path.hpp"
+
 #include <gtest/gtest.h>
 #include <unistd.h>
 
@@ -28,7 +30,8 @@ class TemporaryFolderTest : public testing::Test {
     }
     void TearDown() override { std::filesystem::remove_all(folder_); }
 
-    std::filesystem::path path(const std::string& name) const { return folder_ / name; }
+    /// @param name  in UTF-8
+    std::filesystem::path path(const std::string& name) const { return folder_ / utf8_path(name); }
 
     std::filesystem::path write(const std::string& name, std::string_view content) const {
         std::filesystem::remove(path(name)); // overwriting in place waits for the disk on some file systems

@@ -118,7 +118,7 @@ void ContactSet::set_free_bodies(std::vector<double> masses, std::span<const std
     borne_.assign(bodies.size(), 0);
 }
 
-/// What a free body lies on bears it as well, layer by layer.
+/// A body is borne by the layers below the one that it touches, too.
 void ContactSet::find_borne() {
     if (free_masses_.empty()) return;
     std::fill(borne_.begin(), borne_.end(), 0);

@@ -16,8 +16,8 @@ inline constexpr double kBarrierWeights = 5;
 /// wide, too. And by what it may grow in a step: more lifts what is suddenly loaded faster than is quiet.
 inline constexpr double kBarrierOfPush = 0.5, kMostBarrierGrowth = 1.5;
 /// Strain of the material that the scale of such a barrier would cause, at most: between two plates that
-/// leave too little room push and barrier would otherwise raise each other without bound. What free bodies
-/// add is bounded by their weight.
+/// leave too little room push and barrier would otherwise raise each other without bound. The share
+/// of free bodies is bounded by their weight.
 inline constexpr double kMostBarrierStrain = 0.1;
 /// Share of the thickness from which on the barrier goes on as a parabola. Less holds harder impacts within
 /// Newton's step, and makes its linear systems worse conditioned.
