@@ -36,6 +36,10 @@ inline constexpr double kBodyStiffness = 1e3;
 /// Radians by which a free body turns in one round of turns about its principal axes, at most; the error
 /// grows with the square. And rounds in a step: what spins faster turns farther in each.
 inline constexpr double kLongestTurn = 0.1, kMostTurns = 64;
+/// Turns in which the pose nearest to control points is found, at most, and radians that end them. They
+/// converge quadratically: a few do.
+inline constexpr int kMostFittingTurns = 64;
+inline constexpr double kFittingPrecision = 1e-15;
 
 // ---- The materials ----
 

@@ -130,7 +130,6 @@ void NewtonSolver::end_step_of(const FreeBody& body, double seconds) {
     collider.pose = body.safe_pose;
     rigid.push(collider.pose, body.load(led, seconds), options.gravity, seconds);
     rigid.give_velocities(collider);
-    contacts_->particles().end_move(body.collider(), collider);
 }
 
 void NewtonSolver::step() {
@@ -261,7 +260,7 @@ bool NewtonSolver::step_part(const FramePart& part) {
     const ScratchVector<std::uint8_t> nothing_touches(contacts_ ? 0 : places.size(), workers_.scratch());
     advance(motion_, places, contacts_ ? contacts_->touching() : std::span(nothing_touches), seconds);
     for (const FreeBody& body : free_bodies()) end_step_of(body, seconds);
-    if (contacts_) contacts_->particles().end_step(motion_.places, motion_.velocities, seconds);
+    if (contacts_) contacts_->particles().end_step(colliders, motion_.places, motion_.velocities, seconds);
     for (std::size_t i = 0; i < count; ++i) {
         gained_[i] = (motion_.velocities[i] - velocities_before[i]) * (1 / seconds);
         // A held particle is led, and has no motion of its own.

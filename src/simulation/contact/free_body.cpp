@@ -1,5 +1,6 @@
 #include "simulation/contact/free_body.hpp"
 
+#include "mechanics/small_matrix.hpp"
 #include "mechanics/thresholds.hpp"
 
 #include <algorithm>
@@ -13,41 +14,29 @@ namespace {
 constexpr std::array<Vec3d, FreeBody::kPointCount> kCorners{
     {{1, 1, 1}, {-1, 1, -1}, {1, -1, -1}, {-1, -1, 1}}};
 
-/// The lower triangular L with L L^T = m. @pre m is positive definite
-Matrix3 lower_root(const Matrix3& m) {
-    Matrix3 root{};
-    root[0].x = std::sqrt(m[0].x);
-    root[0].y = m[0].y / root[0].x;
-    root[0].z = m[0].z / root[0].x;
-    root[1].y = std::sqrt(m[1].y - root[0].y * root[0].y);
-    root[1].z = (m[1].z - root[0].z * root[0].y) / root[1].y;
-    root[2].z = std::sqrt(m[2].z - root[0].z * root[0].z - root[1].z * root[1].z);
-    return root;
+/// Along the principal axes, as long as the standard deviations of the mass along them; right-handed.
+Matrix3 spread_of(const RigidBody& body) {
+    const Eigensystem moments = body.second_moments();
+    Matrix3 spread = moments.vectors;
+    if (determinant(spread) < 0) spread[2] = -spread[2];
+    for (std::size_t k = 0; k < 3; ++k) spread[k] *= std::sqrt(moments.values[k]);
+    return spread;
 }
 
-/// The x with L x = v.
-Vec3d solve_lower(const Matrix3& lower, const Vec3d& v) {
-    const double x = v.x / lower[0].x;
-    const double y = (v.y - lower[0].y * x) / lower[1].y;
-    return {x, y, (v.z - lower[0].z * x - lower[1].z * y) / lower[2].z};
-}
-
-/// The rotation next to a matrix that nearly is one: turns by what the columns of both have in common
-/// (Mueller et al. 2016).
-Rotation nearest_rotation(const Matrix3& matrix, Rotation rotation) {
-    constexpr int kMostTurns = 64; // converges quadratically next to a rotation
-    constexpr double kNegligible = 1e-15;
-    for (int turn = 0; turn < kMostTurns; ++turn) {
-        const Matrix3 axes{rotation.apply({1, 0, 0}), rotation.apply({0, 1, 0}), rotation.apply({0, 0, 1})};
+/// The rotation that takes unit axes nearest to others, which it nearly does: turns by the axis and the angle
+/// that all three have in common (Mueller et al. 2016).
+Rotation nearest_rotation(const Matrix3& axes, const Matrix3& turned, Rotation rotation) {
+    for (int turn = 0; turn < threshold::kMostFittingTurns; ++turn) {
         Vec3d across;
         double along = 0;
         for (std::size_t k = 0; k < 3; ++k) {
-            across += cross(axes[k], matrix[k]);
-            along += dot(axes[k], matrix[k]);
+            const Vec3d axis = rotation.apply(axes[k]);
+            across += cross(axis, turned[k]);
+            along += dot(axis, turned[k]);
         }
         const Vec3d vector = across * (1 / std::abs(along));
         const double angle = length(vector);
-        if (!(angle > kNegligible) || !std::isfinite(angle)) break;
+        if (!(angle > threshold::kFittingPrecision) || !std::isfinite(angle)) break;
         rotation = (Rotation::about(vector, angle) * rotation).normalised();
     }
     return rotation;
@@ -57,11 +46,11 @@ Rotation nearest_rotation(const Matrix3& matrix, Rotation rotation) {
 
 FreeBody::FreeBody(std::uint32_t collider, std::uint32_t first_point, const RigidBody& body)
     : collider_(collider), first_point_(first_point), point_mass_(body.mass() / kPointCount),
-      centre_(body.centre()), spread_(lower_root(body.second_moments())) {}
+      centre_(body.centre()), spread_(spread_of(body)) {}
 
 bool FreeBody::is_of(std::uint32_t collider, const RigidBody& body) const {
     return collider == collider_ && body.mass() == point_mass_ * kPointCount && body.centre() == centre_ &&
-           lower_root(body.second_moments()) == spread_;
+           spread_of(body) == spread_;
 }
 
 void FreeBody::add_to(ElasticParts& parts, double time_step) const {
@@ -105,19 +94,19 @@ RigidTransform FreeBody::fit(std::span<const Vec3d> places, const RigidTransform
     if (std::equal(points.begin(), points.end(), of_near.begin())) return near; // to the bit
     Vec3d middle;
     for (const Vec3d& point : points) middle += point * (1.0 / kPointCount);
-    // Of the affine map, times the root of the second moments.
-    Matrix3 spread{};
+    Matrix3 axes{}, turned{};
     for (std::size_t k = 0; k < kPointCount; ++k) {
         const Vec3d arm = (points[k] - middle) * (1.0 / kPointCount);
-        spread[0] += arm * kCorners[k].x;
-        spread[1] += arm * kCorners[k].y;
-        spread[2] += arm * kCorners[k].z;
+        turned[0] += arm * kCorners[k].x;
+        turned[1] += arm * kCorners[k].y;
+        turned[2] += arm * kCorners[k].z;
     }
-    Matrix3 map;
-    map[2] = spread[2] * (1 / spread_[2].z);
-    map[1] = (spread[1] - map[2] * spread_[1].z) * (1 / spread_[1].y);
-    map[0] = (spread[0] - map[1] * spread_[0].y - map[2] * spread_[0].z) * (1 / spread_[0].x);
-    const Rotation rotation = nearest_rotation(map, near.rotation);
+    for (std::size_t k = 0; k < 3; ++k) {
+        const double deviation = length(spread_[k]);
+        axes[k] = spread_[k] * (1 / deviation);
+        turned[k] *= 1 / deviation;
+    }
+    const Rotation rotation = nearest_rotation(axes, turned, near.rotation);
     return {rotation, middle - rotation.apply(centre_)};
 }
 
@@ -133,7 +122,9 @@ Load FreeBody::load(const RigidTransform& led, double seconds) const {
 }
 
 void FreeBody::join(ContactSet::Contact& contact, Vec3d& start_apart, const Vec3d& point) const {
-    const Vec3d from_centre = solve_lower(spread_, safe_pose.to_local(point) - centre_);
+    const Vec3d arm = safe_pose.to_local(point) - centre_;
+    const auto along = [&](const Vec3d& axis) { return dot(axis, arm) / dot(axis, axis); };
+    const Vec3d from_centre{along(spread_[0]), along(spread_[1]), along(spread_[2])};
     const std::array<Vec3d, kPointCount> now = points_at(safe_pose), before = points_at(start_pose);
     for (std::size_t k = 0; k < kPointCount; ++k) {
         const double share = (1 + dot(kCorners[k], from_centre)) / kPointCount;

@@ -55,7 +55,7 @@ class FreeBody {
     std::uint32_t collider_, first_point_;
     double point_mass_;
     Vec3d centre_;
-    Matrix3 spread_; ///< the lower triangular root of the second moments; three columns
+    Matrix3 spread_; ///< the principal axes, as long as the standard deviations of the mass along them
 };
 
 } // namespace echinus

@@ -39,11 +39,6 @@ void ParticleContacts::move(std::uint32_t collider, const RigidTransform& pose) 
         if (obstacles_[o].number == collider) after_[o].pose = pose;
 }
 
-void ParticleContacts::end_move(std::uint32_t collider, const Collider& after) {
-    for (std::size_t o = 0; o < obstacles_.size(); ++o)
-        if (obstacles_[o].number == collider) after_[o] = after;
-}
-
 void ParticleContacts::Answers::resize(std::size_t count) {
     particles.resize(count);
     colliders.resize(count);
@@ -164,7 +159,9 @@ bool ParticleContacts::put_outside(std::span<Vec3d> places, std::span<std::uint8
     return !put_.empty();
 }
 
-void ParticleContacts::end_step(Places places, std::span<Vec3d> velocities, double step) const {
+void ParticleContacts::end_step(const std::vector<Collider>& after, Places places,
+                                std::span<Vec3d> velocities, double step) {
+    for (std::size_t o = 0; o < obstacles_.size(); ++o) after_[o] = after[obstacles_[o].number];
     for (auto put = put_.rbegin(); put != put_.rend(); ++put) // of each particle the first is the last word
         velocities[put->particle] = (put->from - start_[put->particle]) * (1 / step);
     for (const Inside& inside : began_inside_) keep_with_surface(inside, places, velocities);

@@ -33,8 +33,6 @@ class ParticleContacts {
                     std::span<const std::uint8_t> is_held);
     /// A free body has gone there in the step.
     void move(std::uint32_t collider, const RigidTransform& pose);
-    /// The same when the step ends, with its velocities.
-    void end_move(std::uint32_t collider, const Collider& after);
     /// Adds the contacts at these places. @param strengths, is_solved  as SurfaceContacts::find_contacts()
     void add_to(ContactSet& contacts, Places places, std::span<const double> masses,
                 std::span<const double> strengths, std::span<const FreeBody> free_bodies, bool is_solved);
@@ -44,7 +42,9 @@ class ParticleContacts {
     bool put_outside(std::span<Vec3d> places, std::span<std::uint8_t> is_put);
     /// The velocities of those that were put outside do not count that displacement; of them, and of those
     /// that began the step inside a collider, the part across its surface is the collider's.
-    void end_step(Places places, std::span<Vec3d> velocities, double step) const;
+    /// @param after  the colliders as the step has left them: free bodies with their velocities
+    void end_step(const std::vector<Collider>& after, Places places, std::span<Vec3d> velocities,
+                  double step);
 
     /// Queries of maps since the last call, one for each particle and collider.
     std::uint64_t take_query_count() { return std::exchange(query_count_, 0); }

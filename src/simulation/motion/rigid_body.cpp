@@ -35,12 +35,6 @@ struct Solid {
     }
 };
 
-Matrix3 inverse(const Matrix3& m) {
-    const Vec3d x = cross(m[1], m[2]), y = cross(m[2], m[0]), z = cross(m[0], m[1]);
-    const double scale = 1 / dot(m[0], x);
-    return {Vec3d{x.x, y.x, z.x} * scale, Vec3d{x.y, y.y, z.y} * scale, Vec3d{x.z, y.z, z.z} * scale};
-}
-
 } // namespace
 
 RigidBody::RigidBody(const TriangleMesh& surface, double mass, const Collider& collider,
@@ -75,7 +69,12 @@ RigidBody::RigidBody(const TriangleMesh& surface, double mass, const Collider& c
 }
 
 Vec3d RigidBody::angular_velocity(const Rotation& rotation) const {
-    return rotation.apply(times(inverse(inertia_), rotation.inverse().apply(angular_momentum_)));
+    const Eigensystem principal = principal_moments();
+    const Vec3d momentum = rotation.inverse().apply(angular_momentum_);
+    Vec3d velocity;
+    for (std::size_t k = 0; k < 3; ++k)
+        velocity += principal.vectors[k] * (dot(principal.vectors[k], momentum) / principal.values[k]);
+    return rotation.apply(velocity);
 }
 
 void RigidBody::push(const RigidTransform& pose, const Load& load, const Vec3d& gravity, double seconds) {
@@ -101,10 +100,8 @@ double RigidBody::left_of(const Vec3d& gravity) const {
 /// back (Strang), each of which keeps the momentum exactly, so that the energy neither grows nor falls in the
 /// long run (McLachlan 1993; Reich 1994).
 Rotation RigidBody::turned(Rotation rotation, double seconds) const {
-    std::array<std::array<double, 3>, 3> inertia{};
-    for (std::size_t k = 0; k < 3; ++k) inertia[k] = {inertia_[k].x, inertia_[k].y, inertia_[k].z};
-    const Eigensystem principal = eigensystem(inertia);
-    const double least = std::min({principal.values[0], principal.values[1], principal.values[2]});
+    const Eigensystem principal = principal_moments();
+    const double least = *std::min_element(principal.values.begin(), principal.values.end());
     const double most_turn = length(angular_momentum_) / least * seconds;
     const double count =
         std::clamp(std::ceil(most_turn / threshold::kLongestTurn), 1.0, threshold::kMostTurns);
@@ -137,20 +134,22 @@ void RigidBody::give_velocities(Collider& collider) const {
     collider.linear_velocity = velocity_ - cross(angular_velocity_, collider.pose.rotation.apply(centre_));
 }
 
-Matrix3 RigidBody::second_moments() const {
+Eigensystem RigidBody::second_moments() const {
     const double half_trace = (inertia_[0].x + inertia_[1].y + inertia_[2].z) / 2;
-    Matrix3 moments;
-    for (std::size_t k = 0; k < 3; ++k) moments[k] = inertia_[k] * (-1 / mass_);
-    moments[0].x += half_trace / mass_;
-    moments[1].y += half_trace / mass_;
-    moments[2].z += half_trace / mass_;
+    Eigensystem moments = principal_moments();
+    for (double& value : moments.values) value = (half_trace - value) / mass_;
     return moments;
 }
 
-/// Is the matrix of the second moments positive definite?
+Eigensystem RigidBody::principal_moments() const {
+    std::array<std::array<double, 3>, 3> inertia{};
+    for (std::size_t k = 0; k < 3; ++k) inertia[k] = {inertia_[k].x, inertia_[k].y, inertia_[k].z};
+    return eigensystem(inertia);
+}
+
 bool RigidBody::has_inertia() const {
-    const auto& [x, y, z] = second_moments();
-    return x.x > 0 && x.x * y.y - x.y * x.y > 0 && determinant({x, y, z}) > 0;
+    const Eigensystem moments = second_moments();
+    return std::all_of(moments.values.begin(), moments.values.end(), [](double value) { return value > 0; });
 }
 
 bool RigidBody::is_slower_than(double speed) const {

@@ -30,8 +30,8 @@ class RigidBody {
 
     double mass() const { return mass_; }
     Vec3d centre() const { return centre_; }
-    /// The mean of the squares of places about the centre, and of their products: three columns.
-    Matrix3 second_moments() const;
+    /// Of the places of its mass about the centre, in the body frame: variances, and their axes.
+    Eigensystem second_moments() const;
     /// Is no point of it faster than so much? A radian a second counts as a unit of length.
     bool is_slower_than(double speed) const;
     /// It is elsewhere, turned.
@@ -41,6 +41,7 @@ class RigidBody {
   private:
     Vec3d angular_velocity(const Rotation& rotation) const;
     Rotation turned(Rotation rotation, double seconds) const;
+    Eigensystem principal_moments() const;
     bool has_inertia() const;
 
     double mass_ = 1;
