@@ -22,7 +22,7 @@ enum class Feature : std::uint8_t {
 ///
 /// The push-out moves the particle to `point`. For a particle that is outside beyond the margin, or not
 /// finite, the members keep their defaults (not inside, depth 0, normal 0, face -1), and `point` is the
-/// particle itself.
+/// particle itself. With NaN and an exact map, `certain` is false.
 struct Contact {
     static constexpr std::int32_t kUnknownFace = -1;
 

@@ -114,15 +114,15 @@ class ExactMap {
 // ---- Queries. They are noexcept and may run on any number of threads. Queries of one particle do not
 // allocate
 //
-// A point with NaN or infinity is outside and has no contact. On the lattice no particle lies on the surface:
-// it is treated as if it were moved by (e, e^2, e^3), with e infinitely small (docs/accuracy.md). So a
-// particle on a face is inside or outside depending on the face's orientation, and neighbouring closed parts
-// that share a face leave no gap and no overlap between them.
+// A point with NaN or infinity is outside and has no contact; with NaN this is not certain. On the lattice no
+// particle lies on the surface: it is treated as if it were moved by (e, e^2, e^3), with e infinitely small
+// (docs/accuracy.md). So a particle on a face is inside or outside depending on the face's orientation, and
+// neighbouring closed parts that share a face leave no gap and no overlap between them.
 
 /// An answer about an open surface is *certain* if the generalised winding number differs by at least this
 /// margin from every threshold between inside and outside: from one half and minus one half or, with
 /// InsideRule::Parity, from every odd multiple of one half. Near a threshold the answer depends on how a hole
-/// would be closed. For a closed surface all answers are certain.
+/// would be closed. For a closed surface all answers are certain, except about a point with NaN.
 inline constexpr double kCertainMargin = 0.1;
 
 /// Whether a particle is inside, and whether this is certain.

@@ -132,6 +132,20 @@ TEST(ExactMapContains, TreatsNaNAndInfinityAsOutside) {
     EXPECT_TRUE(contains(map, map.view().centre));
 }
 
+TEST(ExactMapContact, IsNotCertainOfAPointWithNaN) {
+    const ExactMap map = ExactMap::build(make_box({2, 2, 2}));
+    constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
+    constexpr float kInfinity = std::numeric_limits<float>::infinity();
+    const std::vector<Vec3f> points{{kNaN, 0, 0}, {0, kNaN, 0}, {0, 0, kNaN}, {kInfinity, 0, 0}, {0, 0, 0}};
+    std::vector<Contact> contacts(points.size());
+    contacts_batch(map, points, 1, contacts);
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        EXPECT_EQ(contacts[i].certain, i >= 3);
+        EXPECT_EQ(contact(map, points[i], 1).certain, i >= 3);
+        EXPECT_EQ(classify(map, points[i]).certain, i >= 3);
+    }
+}
+
 TEST(ExactMapContact, FindsTheNearestPointOfTheWholeSurface) {
     test::Random random(1);
     for (const TriangleMesh& mesh :

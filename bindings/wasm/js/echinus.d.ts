@@ -327,7 +327,7 @@ export interface DistanceMapOptions {
 export type MapOptions = ExactMapOptions | DistanceMapOptions;
 export type AnyMap = ExactMap | DistanceMap;
 
-/** Points are in the frame of the mesh, relative to its origin. A point with NaN or infinity is outside and has no contact. */
+/** Points are in the frame of the mesh, relative to its origin. A point with NaN or infinity is outside and has no contact; an exact map is not certain of one with NaN. */
 declare abstract class MapOfEitherKind extends Deletable {
     /** The size of all data that a query reads. */
     readonly byteCount: number;

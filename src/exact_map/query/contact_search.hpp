@@ -72,7 +72,7 @@ class ContactSearch {
         contact.depth = 0;
         contact.face = Contact::kUnknownFace;
         contact.inside = false;
-        contact.certain = (side & kUncertainBit) == 0;
+        contact.certain = (side & kUncertainBit) == 0 && !has_nan(point_local);
         contact.feature = Feature::Unknown;
     }
 

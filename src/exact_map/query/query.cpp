@@ -24,7 +24,7 @@ bool contains(const ExactMapView& map, Vec3f point_local) noexcept {
 
 Containment classify(const ExactMapView& map, Vec3f point_local) noexcept {
     const Winding winding = winding_at(map, frame_of(map), point_local);
-    return {is_inside(map.rule, winding.number), winding.certain, winding.computed};
+    return {is_inside(map.rule, winding.number), winding.certain && !has_nan(point_local), winding.computed};
 }
 
 namespace {

@@ -15,6 +15,11 @@ using Side = std::uint8_t;
 inline constexpr Side kInsideBit = 1;
 inline constexpr Side kUncertainBit = 2;
 
+/// Such a point is nowhere, so no answer about it is certain.
+inline bool has_nan(const Vec3f& point) {
+    return point.x != point.x || point.y != point.y || point.z != point.z;
+}
+
 /// The scalar query, which is the specification.
 inline Side side_at(const ExactMapView& map, const LatticeFrame& frame, const Vec3f& point_local) noexcept {
     const Winding winding = winding_at(map, frame, point_local);
