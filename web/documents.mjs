@@ -9,7 +9,7 @@ const inProject = (path) => fileURLToPath(new URL(`../${path}`, import.meta.url)
 const read = (path) => readFileSync(inProject(path), 'utf8');
 const inMarkup = (text) => text.replaceAll('&', '&amp;').replaceAll('<', '&lt;').replaceAll('"', '&quot;');
 
-const HEADER = { '../': 'The page', 'index.html': 'README', 'docs.html': 'Docs' };
+const HEADER = { '../': 'The page', 'index.html': 'README', 'docs.html': 'Documents' };
 const [icon] = read('web/index.html').match(/<link rel="icon".*>/);
 /** Which page each document becomes. All lie in one folder, so that their addresses are short. */
 const pages = new Map([['README.md', 'index.html']]);
@@ -48,7 +48,8 @@ function convert(document) {
             },
         },
     });
-    const html = marked.parse(read(document));
+    // Wide tables and code scroll, by the keyboard too.
+    const html = marked.parse(read(document)).replaceAll(/<(pre|table)>/g, '<$1 tabindex="0">');
     return { title, html };
 }
 

@@ -3,6 +3,8 @@ import { type Settings, fromLink, toLink } from './settings';
 
 interface Entry {
     file?: { key: string; name: string };
+    /** The tour's, which is left when the tour ends. */
+    tour?: true;
 }
 
 /** How long a browser that was asked too often gets before it is asked again. Safari refuses more than 100 changes in 30 s. */
@@ -12,12 +14,16 @@ export class Address {
     /** What was opened since the page was loaded, by the keys in the history. */
     readonly #files = new Map<string, File>();
     #again = 0;
+    #left: (() => void) | undefined;
 
     /** @param followed  called when the visitor follows a link in the page, or goes back or forth, with what is there */
     constructor(followed: (settings: Settings, file: File | undefined) => void) {
         addEventListener('popstate', () => {
             clearTimeout(this.#again);
-            followed(fromLink(location.hash), this.#file);
+            const left = this.#left;
+            this.#left = undefined;
+            if (left) left();
+            else followed(fromLink(location.hash), this.#file);
         });
     }
 
@@ -33,21 +39,27 @@ export class Address {
         return this.#file ? undefined : this.#entry.file?.name;
     }
 
-    /** What the page shows, in place of what the address said. A file that is opened has an entry of its own. */
+    /** What the page shows, in place of what the address said. A file has an entry of its own: opening one adds an entry, and so does opening a sample after it. */
     show(settings: Settings, file: File | undefined): void {
         clearTimeout(this.#again);
         const entry: Entry = file ? { file: { key: this.#keyOf(file), name: file.name } } : {};
         try {
-            if (file && this.#file !== file) history.pushState(entry, '', `#${toLink(settings)}`);
+            if (this.#file !== file && !this.#entry.tour) history.pushState(entry, '', `#${toLink(settings)}`);
             else history.replaceState(entry, '', `#${toLink(settings)}`);
         } catch {
             this.#again = window.setTimeout(() => this.show(settings, file), PATIENCE_MS);
         }
     }
 
-    /** Something begins that going back ends. */
+    /** The tour begins, which going back ends. */
     enter(): void {
-        history.pushState(this.#entry, '');
+        history.pushState({ ...this.#entry, tour: true }, '');
+    }
+    /** The tour has ended in another way: its entry is left, and then the page may write the entry before it. */
+    leave(then: () => void): void {
+        if (!this.#entry.tour) return;
+        this.#left = then;
+        history.back();
     }
 
     #keyOf(file: File): string {

@@ -2,18 +2,18 @@
 import { type Ray, Vector3 } from 'three';
 import { Address } from './address';
 import { Client } from './client';
-import { enableFiles } from './files';
+import { companionsOf, enableFiles } from './files';
 import { fillGallery, showChosen } from './gallery';
 import { enableKeys, enablePointer } from './input';
 import { MapInspector } from './map_inspector';
 import { Controls } from './panel/controls';
-import { byId, fillDepthLegend, numbered } from './panel/elements';
+import { byId, fillDepthLegend, numbered, prefersStillness } from './panel/elements';
 import { FigureStrip, showHalf, showHeadline, showReport } from './panel/figures';
 import { Keep, type KeepWishes } from './panel/keep';
 import { showMapFigures } from './panel/map_figures';
 import { beQuiet, enableClosing, remark, say, showProgress } from './panel/notice';
 import type { FromWorker, MapNews, ModelNews, ToWorker } from './protocol';
-import { SAMPLES, type Sample, type Settings, UNDER_SHEETS, besideOf, consistent, fromLink, toLink, notTakenIn } from './settings';
+import { SAMPLES, type Sample, type Settings, UNDER_SHEETS, besideOf, collisionOf, consistent, fromLink, toLink, notTakenIn } from './settings';
 import { Side } from './side';
 import { Tour } from './tour';
 import { BallView, ModelView } from './view/model_view';
@@ -26,13 +26,14 @@ const ZOOM = 1.1;
 /** How often the words beneath the halves and the headline may change. */
 const WORDS_MS = 250;
 
-const HINTS: Record<Settings['hand'], (held: string) => string> = {
-    cloth: () => 'Drag the cloth to pull it, beside it to turn the view.',
+const HINTS: Record<Settings['hand'], (pulled: string, moved: string) => string> = {
+    cloth: (pulled) => `Drag the ${pulled} to pull it. Drag the background to turn the view.`,
     ball: () => 'The ball follows the pointer. Drag to turn the view.',
-    model: (held) => `Drag the ${held} to move it, beside it to turn the view.`,
+    model: (_, moved) => `Drag the ${moved} to move it. Drag the background to turn the view.`,
 };
-/** What of a sample the pointer moves. */
-const HELD: Partial<Record<Sample, string>> = { figure: 'dancer', organ: 'probe', ring: 'ring', flag: 'pole', layers: 'ball' };
+/** The deformable of a sample that the pointer pulls, and the model that it moves. */
+const PULLED: Partial<Record<Sample, string>> = { figure: 'skirt', organ: 'organ', ring: 'kerchief', flag: 'flag' };
+const MOVED: Partial<Record<Sample, string>> = { figure: 'dancer', organ: 'probe', ring: 'ring', flag: 'pole', layers: 'ball' };
 
 /** A requested model: a file, or else the sample of the settings. */
 interface Opening {
@@ -80,6 +81,7 @@ class App {
             choose: (key, value) => this.#settings[key] !== value && this.#change({ ...this.#settings, [key]: value }, key),
             restart: () => this.#restart(),
             enter: () => this.#address.enter(),
+            exit: () => this.#address.leave(() => this.#setLink(this.#settings)),
             showRay: (direction) => this.#inspector.showRay(direction),
             cut: (height) => this.#cut(height),
             picture: () => this.#stage.directions,
@@ -93,17 +95,21 @@ class App {
         });
         this.#bindButtons();
         this.#bindKeys();
-        enableFiles((file) => this.#open(file));
+        enableFiles((file) => {
+            this.#tour.restore();
+            this.#open(file);
+        });
         this.#bindPointer();
         enableClosing();
         fillDepthLegend();
         fillGallery();
         this.#address = new Address((settings, file) => this.#arrive(settings, file));
         this.#stage.onArrival = () => this.#keepCamera();
-        this.#stage.onLoss = () => say('The browser has lost the graphics context. If the picture does not come back, reload the page.');
+        this.#stage.onLoss = () => say('The browser has lost the graphics context. If the picture does not return, load the page again.');
         this.#stage.onLook = () => this.#passLook();
         client.listen((message) => this.#hear(message));
         this.#showAll();
+        if (prefersStillness()) this.#beginStill();
         this.#open(undefined);
         this.#sayWhatIsLacking();
         this.#stage.renderer.setAnimationLoop(() => this.#draw());
@@ -111,20 +117,24 @@ class App {
 
     /** The visitor has followed a link in the page, or has gone back or forth. */
     #arrive(settings: Settings, file: File | undefined): void {
+        const notTaken = notTakenIn(location.hash); // the page soon writes its own settings there
         this.#tour.end();
-        if (toLink(settings) === toLink(this.#settings) && file === this.#asked.file) return;
-        this.#settings = settings;
-        this.#inView = '';
-        this.#controls.show(settings);
-        this.#showAll();
-        this.#open(file);
-        this.#sayWhatIsLacking();
+        if (toLink(settings) === toLink(this.#settings) && file === this.#asked.file) {
+            beQuiet();
+            this.#setLink(settings);
+        } else {
+            this.#settings = settings;
+            this.#inView = '';
+            this.#controls.show(settings);
+            this.#showAll();
+            this.#open(file);
+        }
+        this.#sayWhatIsLacking(notTaken);
     }
 
-    #sayWhatIsLacking(): void {
-        const notTaken = notTakenIn(location.hash);
-        if (this.#address.lost) say(`${this.#address.lost} was open here. The page does not keep files when it is loaded again: open it once more.`);
-        else if (notTaken.length > 0) say(`Of the link, the page cannot take ${shortened(notTaken.join(', '))}.`);
+    #sayWhatIsLacking(notTaken = notTakenIn(location.hash)): void {
+        if (this.#address.lost) say(`${this.#address.lost} was open here. The page loses files when it is loaded again: open the file once more.`);
+        else if (notTaken.length > 0) say(`The page cannot take these parts of the link: ${shortened(notTaken.join(', '))}.`);
     }
 
     // ---- The worker
@@ -143,7 +153,7 @@ class App {
 
     #opening(settings: Settings): ToWorker {
         const { turn, file } = this.#asked;
-        return { kind: 'open', turn, settings, page: document.baseURI, ...(file && { file }) };
+        return { kind: 'open', turn, settings, page: document.baseURI, ...(file && { file, companions: companionsOf(file) }) };
     }
 
     #hear(message: FromWorker): void {
@@ -169,10 +179,10 @@ class App {
     }
 
     #beginCloth(why: 'changed' | 'map' | undefined): void {
-        if (this.#paused) this.#pause(false); // a new cloth falls
+        if (this.#paused && !prefersStillness()) this.#pause(false); // a new cloth falls
         this.#figures.forgetCounts();
         this.#main.view.byDepth = this.#settings.colour === 'depth';
-        if (why) remark(why === 'map' ? 'The cloth falls anew, on the other map.' : fallsAnew(this.#particles, this.#cloths));
+        if (why) remark(why === 'map' ? 'The cloth starts again, on the other map.' : startsAgain(this.#particles, this.#cloths));
         if (this.#settings.beside !== 'nothing' && !this.#other) this.#beginBeside();
     }
 
@@ -196,7 +206,7 @@ class App {
         this.#openings = [];
         this.#inspector.forgive();
         showProgress(undefined);
-        if (this.#inForce) this.#setLink(this.#withOwn(this.#inForce));
+        if (this.#inForce) this.#settings = this.#withOwn(this.#inForce);
         this.#showAll();
         this.#open(before?.file);
         remark('Cancelled.');
@@ -212,7 +222,14 @@ class App {
         if (code === 'Diverged') this.#pause(true);
         if (code === 'Crashed') this.#beginAgain();
         showProgress(undefined);
+        if (!this.#model && turn === this.#asked.turn && this.#settings.model === 'horse') return this.#openInstead(sentence);
         say(sentence);
+    }
+
+    /** The horse is a file, which a server may lack. */
+    #openInstead(sentence: string): void {
+        this.#change({ ...this.#settings, model: 'torus' }, 'model');
+        say(`${sentence}. The page shows a torus instead.`);
     }
 
     /** After a crash the page returns to a sample, unless no model was open: then the sample may be the cause. */
@@ -395,7 +412,7 @@ class App {
         const falls = this.#settings.view === 'cloth';
         if (falls && !(news && view.positions)) return;
         this.#worded = now;
-        showHeadline(this.#map, falls && news ? { particles: this.#particles, soft: news.soft, counts } : undefined);
+        showHeadline(this.#map, falls && news ? { particles: this.#particles, soft: news.soft, counts, ...collisionOf(this.#settings), slowness: this.#figures.slowness.times } : undefined);
         if (!this.#other) return;
         showHalf('half-left', undefined, this.#main.counts);
         showHalf('half-right', this.#settings.beside === 'map' ? 'The paper\u2019s map' : 'Particles only', this.#other.counts);
@@ -414,7 +431,8 @@ class App {
         settings = consistent(settings, key);
         const before = this.#settings;
         this.#controls.show(settings);
-        this.#setLink(settings);
+        if (key === 'model') this.#settings = settings; // the entry of an open file stays as it is
+        else this.#setLink(settings);
         if (settings.beside !== before.beside) this.#endBeside();
         switch (key) {
             case 'view':
@@ -467,9 +485,13 @@ class App {
     }
 
     #showHand(): void {
-        this.#main.keepsOffItself = this.#figures.countsOwn = this.#settings.self;
-        const held = this.#asked.file ? undefined : HELD[this.#settings.model];
-        const hint = HINTS[this.#settings.hand](held ?? 'model');
+        this.#main.keepsOffItself = this.#figures.countsOwn = collisionOf(this.#settings).self;
+        const sample = this.#asked.file ? undefined : this.#settings.model;
+        const pulled = (sample && PULLED[sample]) ?? 'cloth', moved = (sample && MOVED[sample]) ?? 'model';
+        byId('pull').textContent = `Pull ${pulled}`;
+        byId('push').textContent = `Push ${pulled}`;
+        byId('move').textContent = `Move ${moved}`;
+        const hint = HINTS[this.#settings.hand](pulled, moved);
         if (byId('hint').textContent === hint) return;
         byId('hint').textContent = hint;
         if (this.#settings.view === 'cloth' && byId('hint').offsetParent === null) remark(hint); // a small window has no place for it
@@ -494,11 +516,16 @@ class App {
         this.#main.view.group.visible = !map;
         this.#stage.ground.visible = !map;
         this.#inspector.view.group.visible = map;
+        if (map) this.#figures.slowness.forget(); // the cloth stands still meanwhile
         if (map && this.#other) this.#endBeside();
         else if (!map && this.#settings.beside !== 'nothing' && this.#model && !this.#other) this.#beginBeside();
         this.#inspector.ask();
     }
 
+    #beginStill(): void {
+        this.#pause(true);
+        remark('Your system asks for reduced motion: the cloth waits until you resume.');
+    }
     #pause(paused: boolean): void {
         this.#paused = paused;
         byId('pause').textContent = paused ? 'Resume' : 'Pause';
@@ -614,19 +641,19 @@ class App {
     }
 }
 
-function fallsAnew(particles: number, cloths: number): string {
-    const what = numbered(particles, 'particle', 'particles');
-    return cloths === 1 ? `The cloth falls anew, with ${what}.` : `${cloths} cloths fall anew, with ${what} in all.`;
+function startsAgain(particles: number, cloths: number): string {
+    const number = numbered(particles, 'particle', 'particles');
+    return cloths === 1 ? `The cloth starts again, with ${number}.` : `${cloths} cloths start again, with ${number} in total.`;
 }
 
 /** Of a link that may be anything. */
 const shortened = (text: string): string => (text.length > 80 ? `${text.slice(0, 80)}\u2026` : text);
 
 function mapNote(kind: MapNews['kind'], closed: boolean, surfaces: boolean): string {
-    if (kind === 'distance') return 'Out along the ray from the centre, as in the paper: watch the cloth creep along a leg.';
-    if (surfaces) return 'Out by the shortest way. No face of the cloth gets through the surface, closed or open.';
-    if (closed) return 'Out by the shortest way. No particle gets through; sharp parts may show between particles.';
-    return 'Out by the shortest way. The mesh is open: near its gaps sides are estimated, and particles may get in there.';
+    if (kind === 'distance') return 'The push-out leads along the ray from the centre, as in the paper. The cloth creeps along a leg of the horse.';
+    if (surfaces) return 'The push-out leads to the nearest point. No face of the cloth passes through the surface, closed or open.';
+    if (closed) return 'The push-out leads to the nearest point. No particle passes through the surface; sharp parts of the model may come through between particles.';
+    return 'The push-out leads to the nearest point. The mesh is open: near its holes inside or outside is a guess, and particles may get in there.';
 }
 
 export function begin(client: Client): void {

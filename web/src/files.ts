@@ -1,11 +1,26 @@
 import { byId } from './panel/elements';
+import { say } from './panel/notice';
 
-/** Opens files: by the panel's button, or dropped anywhere on the page. */
+const MODEL = /\.(obj|ply|stl|off|glb|gltf|3ds)$/i;
+
+/** The files that were chosen together with a model. */
+const companions = new WeakMap<File, readonly File[]>();
+export const companionsOf = (file: File): readonly File[] => companions.get(file) ?? [];
+
+/** Opens files: by the panel's button, or dropped anywhere on the page. Of several, the page opens the first model. */
 export function enableFiles(given: (file: File) => void): void {
+    const take = (files: readonly File[]) => {
+        const file = files.find(({ name }) => MODEL.test(name)) ?? files[0];
+        if (!file) return;
+        const others = files.filter((other) => other !== file);
+        companions.set(file, others);
+        given(file);
+        const unused = /\.gltf$/i.test(file.name) ? others.filter(({ name }) => MODEL.test(name)) : others;
+        if (unused.length > 0) say(`The page opens one model at a time: ${file.name}, and not ${unused.map(({ name }) => name).join(', ')}.`);
+    };
     const input = byId<HTMLInputElement>('file');
     input.addEventListener('change', () => {
-        const [file] = input.files ?? [];
-        if (file) given(file);
+        take([...(input.files ?? [])]);
         input.value = ''; // so that the same file can be chosen again
     });
     const sign = byId('drop');
@@ -20,8 +35,7 @@ export function enableFiles(given: (file: File) => void): void {
     addEventListener('drop', (event) => {
         event.preventDefault();
         sign.hidden = true;
-        const [file] = event.dataTransfer?.files ?? [];
-        if (file) given(file);
+        take([...(event.dataTransfer?.files ?? [])]);
     });
 }
 

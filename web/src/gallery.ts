@@ -13,13 +13,13 @@ interface Example {
 /** What the gallery shows; scripts/web --pictures takes their pictures. */
 const EXAMPLES: readonly Example[] = [
     { name: 'horse', title: 'A cloth on a horse', caption: 'no ear comes through', link: '', model: 'horse' },
-    { name: 'torus', title: 'A cloth on a torus', caption: '2\u2009500 particles', link: 'model=torus&particles=2500', model: 'torus' },
+    { name: 'torus', title: 'A cloth on a torus', caption: 'with 2\u2009500 particles', link: 'model=torus&particles=2500', model: 'torus' },
     { name: 'figure', title: 'A skirt, dancing', caption: 'on a figure that moves', link: 'model=figure', model: 'figure' },
     { name: 'organ', title: 'A soft organ', caption: 'push it with the probe', link: 'model=organ&hand=model', model: 'organ' },
-    { name: 'ring', title: 'Through a ring', caption: 'pulled through, let go', link: 'model=ring', model: 'ring' },
-    { name: 'flag', title: 'A flag in the wind', caption: 'on a pole that you can shake', link: 'model=flag', model: 'flag' },
-    { name: 'layers', title: 'Ten layers', caption: 'none through another', link: 'model=layers&particles=1000', model: 'layers' },
-    { name: 'beside', title: 'Exact or nearly', caption: 'beside an approximate map', link: 'beside=map', model: 'horse' },
+    { name: 'ring', title: 'Through a ring', caption: 'pulled through, and released', link: 'model=ring', model: 'ring' },
+    { name: 'flag', title: 'A flag in the wind', caption: 'shake its pole', link: 'model=flag', model: 'flag' },
+    { name: 'layers', title: 'Ten layers', caption: 'no layer through another', link: 'model=layers&particles=1000', model: 'layers' },
+    { name: 'beside', title: 'Exact or approximate', caption: 'two maps, side by side', link: 'beside=map', model: 'horse' },
 ];
 
 export function fillGallery(): void {

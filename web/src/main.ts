@@ -1,17 +1,17 @@
 /** Starts the page, or shows why it cannot. */
 import { missingFeatures } from 'echinus';
 import { Client } from './client';
+import { byId, make } from './panel/elements';
 
-/** Replaces the whole page. */
+/** Replaces the whole page by a sentence, a picture of what there would be, and the way to the documents. */
 function sayInstead(words: string): void {
-    const sentence = document.createElement('p');
-    sentence.textContent = words;
-    const title = document.createElement('h1');
-    title.textContent = 'Echinus';
+    const picture = Object.assign(document.createElement('img'), { src: './card.jpg', alt: 'A red cloth lies over a ring, with folds and a woven border', width: 600, height: 315 });
+    const links = make('p', '');
+    for (const [name, address] of [['README', './documents/index.html'], ['Documents', './documents/docs.html']]) links.append(Object.assign(document.createElement('a'), { textContent: name, href: address }), ' ');
     const page = document.createElement('div');
     page.className = 'lacking';
     page.setAttribute('role', 'alert');
-    page.append(title, sentence);
+    page.append(make('h1', 'Echinus'), make('p', words), picture, links);
     document.body.replaceChildren(page);
     document.body.style.display = 'block';
 }
@@ -20,6 +20,7 @@ const sayWhatIsMissing = (features: string[]) =>
     sayInstead(`This page needs ${features.join(' and ')}, which this browser lacks. Chrome and Edge from 95, Firefox from 100 and Safari from 16.4 have what it needs.`);
 
 async function begin(): Promise<void> {
+    byId('subtitle').textContent = 'Loading';
     const missing = missingFeatures();
     if (missing.length > 0) return sayWhatIsMissing(missing);
     const client = new Client(); // loads the module while three.js is loading

@@ -11,8 +11,8 @@ import type { Settings } from './settings';
 export type Triple = [number, number, number];
 
 export type ToWorker =
-    /** A file, or else the sample of the settings. Opening and changing each count as a turn, which the answers name. */
-    | { kind: 'open'; turn: number; settings: Settings; page: string; file?: File }
+    /** A file, with those that it may refer to, or else the sample of the settings. Opening and changing each count as a turn, which the answers name. */
+    | { kind: 'open'; turn: number; settings: Settings; page: string; file?: File; companions?: readonly File[] }
     | { kind: 'change'; turn: number; settings: Settings }
     | { kind: 'restart' }
     | { kind: 'pause'; paused: boolean }

@@ -130,13 +130,16 @@ export function fromLink(hash: string): Settings {
     return consistent(settings as unknown as Settings, said.has('beside') ? 'beside' : 'surfaces');
 }
 
-/** What a link asks for and the page cannot take as it stands. */
-export const notTakenIn = (hash: string): string[] =>
-    [...partsOf(hash)].flatMap(([key, text]) => {
-        const value = valueIn(key, text);
-        if (value === undefined) return [`${key}=${text}`];
-        return typeof value === 'number' && value !== Number(text) ? [`${key}=${text} (but ${value})`] : [];
+/** The parts of a link that the page does not take as they stand: it has no such setting or value, or another part contradicts it. */
+export function notTakenIn(hash: string): string[] {
+    const taken = fromLink(hash);
+    return [...partsOf(hash)].flatMap(([key, text]) => {
+        if (valueIn(key, text) === undefined) return [`${key}=${text}`];
+        const value = taken[key as keyof Settings];
+        const same = typeof value === 'number' ? value === Number(text) : String(value) === text;
+        return same ? [] : [`${key}=${text} (but ${value})`];
     });
+}
 
 const partsOf = (hash: string): URLSearchParams => new URLSearchParams(hash.replace(/^#/, ''));
 
@@ -168,6 +171,12 @@ function withCloths(settings: Settings, changed: keyof Settings): Settings {
 function withHalves(settings: Settings, changed: keyof Settings): Settings {
     if (settings.beside === 'nothing' || (settings.map === 'exact' && settings.surfaces)) return settings;
     return changed === 'map' || changed === 'surfaces' ? { ...settings, beside: 'nothing' } : { ...settings, map: 'exact', surfaces: true };
+}
+
+/** Whether surfaces collide with the model, and with each other: the paper's map has no faces. */
+export function collisionOf({ map, surfaces, self }: Settings): { surfaces: boolean; self: boolean } {
+    const withModel = map === 'exact' && surfaces;
+    return { surfaces: withModel, self: withModel && self };
 }
 
 /** The settings of the other half. */

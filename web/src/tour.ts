@@ -1,5 +1,5 @@
 import { furthestAlong } from './frames';
-import { byId, count } from './panel/elements';
+import { byId, count, prefersStillness } from './panel/elements';
 import type { ModelNews, Triple } from './protocol';
 import type { Settings } from './settings';
 
@@ -10,6 +10,8 @@ interface TourWishes {
     restart(): void;
     /** Going back in the browser ends what begins now. */
     enter(): void;
+    /** Leaves the browser's entry that enter() has made. */
+    exit(): void;
     /** Shows the map along this way from its centre; undefined: along none. */
     showRay(direction: Triple | undefined): void;
     /** Cuts the map open at this height; the visitor's own setting stays. */
@@ -34,7 +36,7 @@ interface Stop {
 /** The last one waits for the visitor, who may be pulling the cloth. */
 const STOPS: readonly Stop[] = [
     {
-        words: (tour) => `A model, as its map has it. The darker, the more faces may have to be tested beside it: few, out of ${count(tour.model()!.report.faceCount)}. The map is built once, in milliseconds.`,
+        words: (tour) => `This is the map of the model. The colour of a face shows how many faces a query near it may have to test: few of the ${count(tour.model()!.report.faceCount)}. The map is built once, in milliseconds.`,
         enter: (tour) => {
             tour.choose('map', 'exact'); // the paper's has no cells
             tour.choose('view', 'map');
@@ -43,20 +45,20 @@ const STOPS: readonly Stop[] = [
         },
     },
     {
-        words: 'One ray from the centre outwards. It is thick where it is inside the model: the ray alone answers for every point on it.',
+        words: 'A ray leaves the centre. It is thick where it is inside the model. The crossings of the ray with the surface decide for all of its points whether they are inside or outside.',
         move: (tour, share) => tour.showRay(acrossPicture(tour, share)),
     },
     {
-        words: 'Many directions share a cell, outlined here. It knows at which distances there may be surface: its bands, in blue. Outside of them the answer needs no test at all.',
+        words: 'Many directions share a cell; its outline is drawn here. The cell stores the distances at which there may be surface: its bands, in blue. Between the bands a query needs no test at all.',
         enter: (tour) => tour.showRay(acrossPicture(tour, 1)),
     },
     {
-        words: 'Cut open: the map\u2019s answers on a plane, red inside. They are decided in whole numbers, so they are exact.',
+        words: 'A cut through the model shows the answers of the map on a plane: red is inside. The map decides by integer arithmetic, so the answers are exact.',
         enter: (tour) => tour.showRay(undefined),
         move: (tour, share) => tour.cut(0.9 - 1.6 * share),
     },
     {
-        words: 'A cloth asks about each of its particles, many times a second, and each that would be inside is put back the shortest way. Now pull at it.',
+        words: 'The simulation asks the map about the particles and the faces of the cloth in each step, and keeps them outside. Pull the cloth now.',
         enter: (tour) => {
             tour.cut(tour.settings().slice);
             tour.choose('view', 'cloth');
@@ -69,7 +71,7 @@ const STOPS: readonly Stop[] = [
 function acrossPicture(tour: TourWishes, share: number): Triple {
     const { vertices, centre } = tour.model()!;
     const { up, right } = tour.picture();
-    const [from, to] = [up, right].map((way) => unit(furthestAlong(way, vertices).map((part, k) => part - centre[k])));
+    const [from, to] = [up, right].map((direction) => unit(furthestAlong(direction, vertices).map((part, k) => part - centre[k])));
     return from.map((part, k) => (1 - share) * part + share * to[k]) as Triple;
 }
 
@@ -110,8 +112,13 @@ export class Tour {
     next(): void {
         if (this.runs) this.#goTo(this.#stop + 1);
     }
-    /** Back to the cloth, and to the visitor's own map. */
     end(): void {
+        if (!this.runs) return;
+        this.#wishes.exit();
+        this.restore();
+    }
+    /** Back to the cloth, and to the visitor's own map. */
+    restore(): void {
         if (!this.runs) return;
         this.leave();
         this.#wishes.choose('view', 'cloth');
@@ -141,7 +148,8 @@ export class Tour {
         byId('tour-end').hidden = isLast;
         stop.enter?.(this.#wishes);
         this.#since = performance.now();
-        if (!isLast) this.#timer = window.setInterval(() => this.#move(stop), STEP_MS);
+        if (prefersStillness()) stop.move?.(this.#wishes, 1);
+        else if (!isLast) this.#timer = window.setInterval(() => this.#move(stop), STEP_MS);
     }
 
     #move(stop: Stop): void {

@@ -53,7 +53,7 @@ test('both halves keep step, pause together and are pulled together', async () =
 
 test("the view of the paper's map says how many points near the surface are on another side", async () => {
     const page = await browser.open('#model=torus&view=map&map=distance&directions=2500&particles=100', SMALL);
-    await page.waitForFunction(() => /near the surface, within 0\.02/.test(document.getElementById('legend').textContent));
+    await page.waitForFunction(() => /within 0\.02\u2009R of the surface/.test(document.getElementById('legend').textContent));
     const [near, everywhere] = (await page.locator('#legend').textContent()).match(/[\d.]+(?=\u2009%)/g).map(Number);
     assert.ok(near > everywhere && near > 0, `${near} % and ${everywhere} %`);
     await browser.close(page);

@@ -185,7 +185,7 @@ test('faces that intersect are counted and glow, and once surfaces collide there
     assert.ok((await wrongPixels(page)) > 20);
     await page.locator('input[name=self]').check();
     assert.ok(await page.locator('input[name=surfaces]').isChecked(), 'a cloth that collides with itself does with the model');
-    assert.match(await page.locator('#map-note').textContent(), /No face of the cloth gets through/);
+    assert.match(await page.locator('#map-note').textContent(), /No face of the cloth passes through/);
     await page.waitForFunction(() => ['figure-pairs', 'figure-own-pairs'].every((id) => document.getElementById(id).textContent === '0'), null, { timeout: 60_000 });
     await untilFrame(page, 15 + (await page.evaluate(() => Number(document.body.dataset.frame))));
     assert.equal(await page.locator('#notice').isVisible(), false);
@@ -227,7 +227,7 @@ test('several cloths fall on the model and on each other, and none gets through 
     const page = await browser.open('#model=torus&particles=1200', SMALL);
     await untilFrame(page, 1);
     await page.locator('input[name=cloths]').fill('3');
-    await page.locator('#remark', { hasText: '3 cloths fall anew, with 1\u2009200 particles in all.' }).waitFor();
+    await page.locator('#remark', { hasText: '3 cloths start again, with 1\u2009200 particles in total.' }).waitFor();
     assert.ok(await page.locator('input[name=self]').isChecked());
     await page.waitForFunction(() => Number(document.body.dataset.frame) > 75, null, { timeout: 120_000 });
     await untilCounted(page);

@@ -4,7 +4,7 @@ import { mkdtemp, rm, writeFile } from 'node:fs/promises';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
-import { gltfTetrahedron, tetrahedra, torusStl } from './meshes.mjs';
+import { gltfNumbers, gltfTetrahedron, tetrahedra, torusStl } from './meshes.mjs';
 import { SMALL, picture, startBrowser, untilFrame, watchPauses } from './support.mjs';
 
 const CLOSED = tetrahedra()['t.obj'];
@@ -157,7 +157,7 @@ test('a line of faults shows only faintly through the cloth that hides it', asyn
         for (let press = 0; press < count; ++press) await page.keyboard.press(key);
         await page.waitForTimeout(500);
     };
-    // The cloth is held above it, right after it has begun to fall anew: as often as it takes to catch it there.
+    // The cloth is held above it, right after it has started again: as often as it takes to catch it there.
     await untilFrame(page, 10);
     await page.waitForFunction(() => {
         const isAbove = Number(document.body.dataset.frame) < 8;
@@ -180,7 +180,7 @@ test('the words for one face, one vertex and one edge are in the singular', asyn
     await untilFrame(page, 1);
     const closed = tetrahedra()['t.obj'];
     await choose(page, 'doubled.obj', `${closed}${closed.trim().split('\n').at(-1)}\n`);
-    await untilReport(page, '1 face left out that repeated others');
+    await untilReport(page, '1 duplicate face removed');
     await choose(page, 'one.obj', 'v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n');
     await untilTitle(page, 'one.obj, 1 face');
     assert.doesNotMatch(`${await page.locator('#subtitle').textContent()} ${await page.locator('#report').textContent()}`, /\b1 (faces|vertices|edges|parts|pairs)\b/);
@@ -225,6 +225,19 @@ async function pixelsOf(page, colour, tolerance = 12) {
         return found;
     }, [png, colour, tolerance]);
 }
+
+test('a glTF file is opened with the file that it refers to, and of several models the first one', async () => {
+    const page = await browser.open('#model=torus&particles=100', SMALL);
+    await untilFrame(page, 1);
+    const file = (name, content) => ({ name, mimeType: 'application/octet-stream', buffer: Buffer.from(content) });
+    await page.locator('#file').setInputFiles([file('t.bin', gltfNumbers()), file('t.gltf', gltfTetrahedron({ buffer: 't.bin' }))]);
+    await untilTitle(page, 't.gltf, 4 faces');
+    assert.ok(!(await page.locator('#notice').isVisible()));
+    await page.locator('#file').setInputFiles([file('a.obj', CLOSED), file('b.off', tetrahedra()['t.off'])]);
+    await untilTitle(page, 'a.obj, 4 faces');
+    assert.equal(await page.locator('#notice span').textContent(), 'The page opens one model at a time: a.obj, and not b.off.');
+    await browser.close(page);
+});
 
 test('nothing is fetched for an opened file, which is shown without its pictures', async () => {
     const page = await browser.open('#model=torus&particles=100', SMALL);

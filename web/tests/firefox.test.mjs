@@ -39,7 +39,7 @@ const picture = async (name) => {
 
 test('in Firefox the page opens with a falling cloth, no face of which is through the model', { skip }, async () => {
     await page.open(`${address}#model=torus&particles=900`);
-    await page.until(() => /no face through the model/.test(document.getElementById('headline').textContent));
+    await page.until(() => /no face cuts the model/.test(document.getElementById('headline').textContent));
     await untilFrame(15);
     assert.equal(await page.run(() => document.getElementById('figure-inside').textContent), '0');
     await picture('firefox');
@@ -79,9 +79,9 @@ test('in Firefox a file that is dropped on the page is opened, and its map is sh
 
 test('in Firefox the figure deforms with its skirt on it', { skip }, async () => {
     await page.open(`${address}#model=figure&particles=600`);
-    await page.until(() => /no face through the model/.test(document.getElementById('headline').textContent));
+    await page.until(() => /no face cuts the model/.test(document.getElementById('headline').textContent));
     await untilFrame(30);
     await picture('firefox_figure');
-    assert.match(await page.run(() => document.getElementById('headline').textContent), /no face through the model/);
+    assert.match(await page.run(() => document.getElementById('headline').textContent), /no face cuts the model/);
     assert.deepEqual(await page.run(() => window.complaints), []);
 });

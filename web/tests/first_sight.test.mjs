@@ -12,9 +12,10 @@ after(() => browser?.stop());
 const untilHeadline = (page, pattern) =>
     page.waitForFunction((source) => new RegExp(source).test(document.getElementById('headline').textContent), pattern.source, { timeout: 60_000 });
 
-test('the headline says what there is, that nothing is wrong, and what the map took', async () => {
+test('the headline says what there is, that nothing intersects, and what the map took', async () => {
     const page = await browser.open('#model=torus&particles=900', SMALL);
-    await untilHeadline(page, /^900 particles, no face through the model, a map of [\d.]+\u202fkB built in [\d.]+\u202fms$/);
+    await untilHeadline(page, /^900 particles, no face cuts the model or the cloth itself, map of [\d.]+\u202fkB built in [\d.]+\u202fms/);
+    assert.ok(await page.locator('#headline .good').isVisible());
     await page.locator('input[name=map][value=distance]').check();
     await untilHeadline(page, /the paper’s map of/);
     await browser.close(page);
@@ -30,9 +31,47 @@ test('the headline in the view of the map is about the map of the model that is 
     await browser.close(page);
 });
 
+test('the headline is not green where self-collision or surface collision is off, and says so', async () => {
+    const page = await browser.open('#model=torus&particles=400&self=false', SMALL);
+    await untilHeadline(page, /^400 particles, no face cuts the model, self-collision is off/);
+    assert.equal(await page.locator('#headline .good').count(), 0);
+    await page.locator('input[name=surfaces]').uncheck();
+    await untilHeadline(page, /only particles collide/);
+    assert.equal(await page.locator('#headline .good').count(), 0);
+    await browser.close(page);
+});
+
+test('the headline is red where the cloth cuts itself in spite of self-collision', async () => {
+    const page = await browser.open('#model=torus&particles=400', { ...SMALL, beforeLoad: cutItself });
+    await untilHeadline(page, /^400 particles, 3 pairs of its own faces cut each other/);
+    assert.ok(await page.locator('#headline .bad').isVisible());
+    await browser.close(page);
+});
+
+/** Runs in the page: the worker that counts intersecting faces finds three pairs. */
+function cutItself() {
+    const Usual = globalThis.Worker;
+    globalThis.Worker = class extends Usual {
+        set onmessage(hear) {
+            super.onmessage = ({ data }) => hear({ data: 'own' in data ? { ...data, own: 3 } : data });
+        }
+    };
+}
+
+test('the headline names slow motion', async () => {
+    const page = await browser.open('#model=torus&particles=400', { ...SMALL, beforeLoad: () => {
+        const now = performance.now.bind(performance);
+        performance.now = () => 20 * now(); // the simulation, in its worker, has the usual clock
+    } });
+    await untilHeadline(page, /, \d+\u00d7 slow motion$/);
+    await page.keyboard.press('Space');
+    await page.waitForFunction(() => !/slow motion/.test(document.getElementById('headline').textContent));
+    await browser.close(page);
+});
+
 test('the headline says what is wrong when something is', async () => {
     const page = await browser.open('#model=torus&particles=400&thickness=0.1&surfaces=false', SMALL);
-    await untilHeadline(page, /^400 particles, \d+ pairs? of faces cut, /);
+    await untilHeadline(page, /^400 particles, \d+ pairs? of faces cut, only particles collide/);
     await browser.close(page);
 });
 
@@ -131,6 +170,17 @@ test('in no window words or buttons lie over the model', async () => {
     }
 });
 
+test('on a small phone the picture stays in sight and leaves more than half of the window to the rest', async () => {
+    const page = await browser.open('#model=torus&particles=100', { viewport: { width: 320, height: 568 } });
+    await untilFrame(page, 1);
+    await page.evaluate(() => scrollTo({ top: document.body.scrollHeight }));
+    const covered = await page.evaluate(() => Math.max(...['stage', 'bar'].map((id) => document.getElementById(id).getBoundingClientRect().bottom)));
+    assert.ok(covered > 100 && covered < 0.5 * 568, `${covered} pixels`);
+    await page.keyboard.press('t');
+    await page.waitForFunction(() => document.getElementById('tour-end').getBoundingClientRect().bottom <= innerHeight);
+    await browser.close(page);
+});
+
 test('in the light and in the dark the chosen tab stands out, and its word is legible', async () => {
     for (const colorScheme of ['light', 'dark']) {
         const page = await browser.open('#model=torus&particles=100', { ...SMALL, colorScheme });
@@ -157,7 +207,7 @@ for (const [model, particles] of Object.entries(FEW))
         const page = await browser.open(`#model=${model}&particles=${particles}`, { viewport: { width: 600, height: 400 } });
         page.setDefaultTimeout(120_000);
         await page.waitForFunction(() => Number(document.body.dataset.frame) >= 60);
-        await untilHeadline(page, /no face through the model/);
+        await untilHeadline(page, /no face cuts the model/);
         assert.deepEqual(page.complaints, []);
         await picture(page, `example_${model}`);
         await browser.close(page);

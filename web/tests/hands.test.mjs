@@ -143,8 +143,8 @@ test('an open model says what that means, and how much is certain', async () => 
     await untilFrame(page, 1);
     const closed = tetrahedra()['t.obj'];
     await page.locator('#file').setInputFiles({ name: 'open.obj', mimeType: 'model/obj', buffer: Buffer.from(closed.slice(0, closed.lastIndexOf('f '))) });
-    await page.waitForFunction(() => /Open: sides/.test(document.getElementById('report').textContent));
-    assert.match(await page.locator('#report').textContent(), /in \d+(\.\d+)?\u2009% of the ball around it the answer is certain.*Close its holes/);
+    await page.waitForFunction(() => /Open: inside or outside/.test(document.getElementById('report').textContent));
+    assert.match(await page.locator('#report').textContent(), /The answer is certain in \d+(\.\d+)?\u2009% of the bounding sphere.*once the holes are closed/);
     await page.waitForFunction(() => document.getElementById('figure-inside').textContent === 'no inside');
     await page.waitForFunction(() => !/inside/.test(document.getElementById('headline').textContent)); // its words change now and then
     await browser.close(page);
@@ -162,11 +162,11 @@ test('a file of random bytes is refused in legible words', async () => {
     await browser.close(page);
 });
 
-test('another number of particles says that the cloth falls anew', async () => {
+test('another number of particles says that the cloth starts again', async () => {
     const page = await browser.open('#model=torus&particles=400', SMALL);
     await untilFrame(page, 20);
     await page.locator('input[name=particles]').fill('0.5');
-    await page.locator('#remark', { hasText: 'falls anew' }).waitFor();
+    await page.locator('#remark', { hasText: 'starts again' }).waitFor();
     await browser.close(page);
 });
 
@@ -213,6 +213,47 @@ test('the last stop of the tour waits while the visitor pulls the cloth', async 
     await browser.close(page);
 });
 
+test('the tour leaves no entry in the history when a key ends it, and a file that is dropped opens under the cloth', async () => {
+    const page = await browser.open('#model=sphere&particles=400', SMALL);
+    await untilFrame(page, 1);
+    await page.evaluate(() => (location.hash = '#model=torus&particles=400'));
+    await page.waitForFunction(() => document.getElementById('subtitle').textContent.startsWith('torus'));
+    await page.keyboard.press('t');
+    await page.keyboard.press('Escape');
+    await page.waitForFunction(() => document.body.classList.contains('view-cloth'));
+    await page.goBack();
+    await page.waitForFunction(() => document.getElementById('subtitle').textContent.startsWith('sphere'));
+    await page.keyboard.press('t');
+    await page.locator('#tour').waitFor();
+    await page.locator('#file').setInputFiles({ name: 't.obj', mimeType: 'model/obj', buffer: Buffer.from(tetrahedra()['t.obj']) });
+    await page.waitForFunction(() => document.getElementById('subtitle').textContent.startsWith('t.obj') && document.body.classList.contains('view-cloth'));
+    await page.goBack();
+    await page.waitForFunction(() => document.getElementById('subtitle').textContent.startsWith('sphere'));
+    await browser.close(page);
+});
+
+test('where the system asks for reduced motion the cloth waits, and the tour does not turn its pages', async () => {
+    const page = await browser.open('#model=torus&particles=400', { ...SMALL, reducedMotion: 'reduce' });
+    await page.waitForFunction(() => document.body.dataset.paused === 'true');
+    await page.waitForTimeout(300);
+    assert.equal(await frameOf(page), 0);
+    await page.locator('#pause').click();
+    await untilFrame(page, 2);
+    await page.keyboard.press('t');
+    await page.waitForTimeout(8000); // longer than a stop lasts otherwise
+    assert.equal(await page.locator('#tour').getAttribute('data-stop'), '0');
+    await browser.close(page);
+});
+
+test('the buttons of the pointer name what it pulls and moves', async () => {
+    const page = await browser.open('#model=organ&particles=1500', SMALL);
+    await page.waitForFunction(() => document.getElementById('subtitle').textContent.startsWith('organ'));
+    assert.deepEqual(await page.locator('#hands span').allTextContents(), ['Pull organ', 'Push organ', 'Move probe']);
+    await page.locator('select[name=model]').selectOption('sphere');
+    await page.waitForFunction(() => document.getElementById('move').textContent === 'Move model');
+    await browser.close(page);
+});
+
 test('the tour ends where the visitor goes elsewhere: back, to another example, to another view', async () => {
     const page = await browser.open('#model=torus&particles=400', SMALL);
     await untilFrame(page, 5);
@@ -224,8 +265,7 @@ test('the tour ends where the visitor goes elsewhere: back, to another example, 
         await leave();
         await page.locator('#tour').waitFor({ state: 'hidden' });
         await page.waitForFunction(() => document.body.classList.contains('view-cloth'));
-        await page.waitForTimeout(300);
-        assert.match(page.url(), name === 'tile' ? /#model=flag/ : /#model=sphere&particles=400$/, name);
+        await page.waitForURL(name === 'tile' ? /#model=flag/ : /#model=sphere&particles=400$/);
     }
     assert.deepEqual(page.complaints, []);
     await browser.close(page);

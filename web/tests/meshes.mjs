@@ -21,7 +21,7 @@ export function tetrahedra() {
 }
 
 /** The numbers of a tetrahedron as glTF has them: corners, then faces. */
-const gltfNumbers = () => Buffer.concat([Buffer.from(new Float32Array(CORNERS.flat()).buffer), Buffer.from(new Uint16Array(FACES.flat()).buffer)]);
+export const gltfNumbers = () => Buffer.concat([Buffer.from(new Float32Array(CORNERS.flat()).buffer), Buffer.from(new Uint16Array(FACES.flat()).buffer)]);
 
 /** Their description, without the optional default scene and the location of the numbers. */
 function gltfDescription(buffer) {

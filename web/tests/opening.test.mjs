@@ -3,7 +3,7 @@ import assert from 'node:assert/strict';
 import { readFile } from 'node:fs/promises';
 import { after, before, test } from 'node:test';
 import { tetrahedra } from './meshes.mjs';
-import { SMALL, startBrowser, untilFrame } from './support.mjs';
+import { SMALL, hasHorse, startBrowser, untilFrame } from './support.mjs';
 
 const GOOD = tetrahedra()['t.obj'];
 const BROKEN = 'v 0 0 0\nf 1 2 9\n';
@@ -98,10 +98,35 @@ test('whoever goes back to a file finds it open; after the page is loaded again 
 test('a link that asks for what the page does not have opens the rest and says so', async () => {
     const page = await browser.open('#model=hors&particles=400&thickness=thin&wind=99&beside=map&colour=fabric&__proto__=1', SMALL);
     await untilFrame(page, 1);
-    assert.equal(await notice(page), 'Of the link, the page cannot take model=hors, thickness=thin, wind=99 (but 10), __proto__=1.');
+    assert.equal(await notice(page), 'The page cannot take these parts of the link: model=hors, thickness=thin, wind=99 (but 10), __proto__=1.');
     await page.evaluate(() => (location.hash = '#model=torus&particles=400'));
     await untilTitle(page, 'torus');
     assert.ok(!(await page.locator('#notice').isVisible()));
+    for (const [wrong, named] of [['thickness=NaN', 'thickness=NaN'], ['beside=particles&map=distance', 'map=distance (but exact)'], ['self=true&surfaces=false', 'self=true (but false)']]) {
+        await page.evaluate((part) => (location.hash = `#model=torus&particles=400&${part}`), wrong);
+        await page.waitForFunction((words) => document.querySelector('#notice span').textContent === `The page cannot take these parts of the link: ${words}.`, named);
+        assert.ok(await page.locator('#notice').isVisible());
+    }
+    await browser.close(page);
+});
+
+test('whoever chooses a sample from the list finds the file by going back', async () => {
+    const page = await openPage();
+    await drop(page, [['good.obj', GOOD]]);
+    await untilTitle(page, 'good.obj, 4 faces');
+    await page.locator('select[name=model]').selectOption('sphere');
+    await untilTitle(page, 'sphere');
+    await page.goBack();
+    await untilTitle(page, 'good.obj, 4 faces');
+    await browser.close(page);
+});
+
+test('a server without the horse gets a torus instead, and the page says so', { skip: !hasHorse && 'the horse is not installed' }, async () => {
+    const page = await browser.open('about:blank', { ...SMALL, fresh: true });
+    await page.route('**/horse.3ds', (route) => route.fulfill({ status: 404 }));
+    await page.goto(browser.address);
+    await untilTitle(page, 'torus');
+    assert.equal(await notice(page), 'horse.3ds: the server answers with status 404. The page shows a torus instead.');
     await browser.close(page);
 });
 
@@ -168,11 +193,11 @@ function withoutWorker() {
 test('only closed meshes get the note that no particle gets through', async () => {
     const page = await openPage();
     await page.locator('input[name=surfaces]').uncheck();
-    assert.match(await page.locator('#map-note').textContent(), /No particle gets through/);
+    assert.match(await page.locator('#map-note').textContent(), /No particle passes through/);
     await drop(page, [['open.obj', OPEN]]);
     await untilTitle(page, 'open.obj, 3 faces');
     assert.match(await page.locator('#map-note').textContent(), /The mesh is open/);
-    assert.doesNotMatch(await page.locator('#map-note').textContent(), /No particle gets through/);
+    assert.doesNotMatch(await page.locator('#map-note').textContent(), /No particle passes through/);
     await browser.close(page);
 });
 

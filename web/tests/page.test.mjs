@@ -238,7 +238,27 @@ test('a browser without WebGL gets a message', async () => {
     const page = await browser.open('', { ...SMALL, beforeLoad: () => (HTMLCanvasElement.prototype.getContext = () => null) });
     await page.locator('.lacking').waitFor();
     assert.match(await page.locator('.lacking').textContent(), /needs WebGL 2/);
+    for (const link of await page.locator('.lacking a').all()) assert.ok((await page.request.get(new URL(await link.getAttribute('href'), page.url()).href)).ok());
+    assert.ok(await page.locator('.lacking img').isVisible());
     assert.deepEqual(page.complaints, []);
+    await browser.close(page);
+});
+
+test('a browser without JavaScript gets a sentence and the documents', async () => {
+    const page = await browser.open('', { ...SMALL, javaScriptEnabled: false, folded: true });
+    assert.match(await page.locator('#subtitle').textContent(), /needs JavaScript/);
+    assert.ok(await page.locator('#subtitle a').first().isVisible());
+    await browser.close(page);
+});
+
+test('the camera does not come so near that it is inside the cloth', async () => {
+    const page = await browser.open('#model=sphere&particles=100', SMALL);
+    await untilFrame(page, 1);
+    for (let press = 0; press < 50; ++press) {
+        await page.keyboard.press('+');
+        await page.waitForTimeout(20);
+    }
+    await page.waitForFunction(() => /camera=[^_]*_[^_]*_1\.25_/.test(location.hash));
     await browser.close(page);
 });
 

@@ -38,7 +38,7 @@ async function take(link, moment, { width, height }, path, quality) {
 
 /** Without the times that the page took: software draws it, perhaps beside other work. */
 async function takePage(path) {
-    const page = await stopAt('', MOMENTS.horse, { width: 1200, height: 760 }, '#figures .detail, #figures > :has(#figure-fps, #figure-build), #headline > span:last-child { display: none }');
+    const page = await stopAt('', MOMENTS.horse, { width: 1200, height: 760 }, '#figures .detail, #figures > :has(#figure-fps, #figure-build), #headline > span:nth-last-child(-n + 2) { display: none }');
     await page.screenshot({ path });
     console.log(path);
     await browser.close(page);

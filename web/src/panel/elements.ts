@@ -30,6 +30,9 @@ export function byId<T extends HTMLElement = HTMLElement>(id: string): T {
     return element as T;
 }
 
+/** Does the visitor's system ask for little motion? */
+export const prefersStillness = (): boolean => matchMedia('(prefers-reduced-motion: reduce)').matches;
+
 export function make(tag: string, text: string, className = ''): HTMLElement {
     const element = document.createElement(tag);
     element.textContent = text;
@@ -63,7 +66,7 @@ export function writeCount(id: string, number: number | undefined, instead = '\u
 /** The legend of the cloth's colours: depth in the layer of contact, as measured by the worker (worker/judge.ts). */
 export function fillDepthLegend(): void {
     const ends = make('div', '', 'ends');
-    ends.append(make('span', 'no contact'), make('span', 'lies on it'), make('span', 'on the surface'));
+    ends.append(make('span', 'no contact'), make('span', 'at the thickness'), make('span', 'on the surface'));
     const inside = make('span', 'inside');
     inside.prepend(swatch(WRONG));
     byId('depth-legend').replaceChildren(scaleBar(), ends, inside);

@@ -3,6 +3,7 @@ import type { Counts } from '../side';
 import { FAULT } from '../view/colours';
 import { byId, bytes, count, make, milliseconds, numbered, swatch, writeCount } from './elements';
 import { remark } from './notice';
+import { Slowness } from './slowness';
 
 /** How often the figures are updated: flickering numbers are unreadable. */
 const PERIOD_MS = 250;
@@ -20,6 +21,7 @@ export class FigureStrip {
     #mostInside: number | undefined = 0;
     #stepSeconds = 0;
     #countsOwn: boolean | undefined;
+    readonly slowness = new Slowness();
 
     constructor() {
         // A finger sees no titles.
@@ -43,11 +45,14 @@ export class FigureStrip {
         // The largest since the last update: a single frame with a particle inside must not go unnoticed.
         this.#mostInside = figures.inside === undefined ? undefined : Math.max(this.#mostInside ?? 0, figures.inside);
         if (figures.stepCount === 0) this.#writeInside();
+        if (figures.paused || figures.atRest) this.slowness.forget();
+        else this.slowness.add(figures.stepCount * figures.stepSeconds);
     }
 
     /** A new cloth, of which nothing is known yet: what was counted of the one before is not its own. */
     forgetCounts(): void {
         this.#forgetSteps();
+        this.slowness.forget();
         writeCount('figure-inside', undefined);
         writeCount('figure-pairs', undefined);
         this.#writeOwn(undefined);
@@ -93,22 +98,29 @@ export class FigureStrip {
     }
 }
 
-/** What falls, and what is counted of it. */
+/** A cloth or a soft body, what is counted of it, and what keeps it from intersecting. */
 export interface Cloth {
     particles: number;
     soft: boolean;
     counts: Counts;
+    /** Surfaces collide with the model, and with each other. */
+    surfaces: boolean;
+    self: boolean;
+    /** How many times slower than in life it moves, where it does. */
+    slowness: number | undefined;
 }
 
-/** One sentence with the page's own figures: what is there, that nothing is wrong with it, and what that took. Of the map alone, where no cloth is seen. */
+/** One sentence with the page's own figures: what is there, whether it intersects anything, what is off, the map, and the pace. Of the map alone, where no cloth is seen. */
 export function showHeadline(map: MapNews, cloth?: Cloth): void {
     const ofMap = `map of ${bytes(map.byteCount)} built in ${milliseconds(map.buildMs)}`;
     const isExact = map.kind === 'exact';
     const parts = cloth
         ? [
               make('span', `${count(cloth.particles)} ${cloth.soft ? 'particles of a soft body' : 'particles'}, `),
-              verdict(cloth.counts),
-              make('span', `, ${isExact ? 'a' : 'the paper\u2019s'} ${ofMap}`),
+              verdict(cloth),
+              make('span', whatIsOff(cloth)),
+              make('span', `, ${isExact ? '' : 'the paper\u2019s '}${ofMap}`),
+              make('span', cloth.slowness ? `, ${cloth.slowness.toFixed(cloth.slowness < 9.5 ? 1 : 0)}\u00d7 slow motion` : ''),
           ]
         : [make('span', `${isExact ? 'An exact' : 'The paper\u2019s'} ${ofMap}`)];
     // At a thin space a line may end, and a number must not.
@@ -116,18 +128,27 @@ export function showHeadline(map: MapNews, cloth?: Cloth): void {
     if (byId('headline').textContent !== parts.map(({ textContent }) => textContent).join('')) byId('headline').replaceChildren(...parts);
 }
 
-function verdict(counts: Counts): HTMLElement {
-    const wrong = wrongsOf(counts);
+/** Green is for a cloth that all of collision keeps from intersecting, and that does not intersect. */
+function verdict({ counts, self, soft }: Cloth): HTMLElement {
+    const wrong = wrongsOf(counts, self);
     if (wrong.length > 0) return make('span', wrong.join(' and '), 'bad');
-    if (counts.withModel !== undefined) return make('span', 'no face through the model', 'good');
-    return counts.inside === undefined ? make('span', 'falling') : make('span', 'none inside the model', 'good');
+    if (counts.withModel === undefined) return make('span', counts.inside === undefined ? 'falling' : 'none inside the model');
+    if (!self) return make('span', 'no face cuts the model');
+    return make('span', `no face cuts the model or the ${soft ? 'body' : 'cloth'} itself`, 'good');
 }
 
-/** What is wrong with a cloth, in words; nothing, where nothing is. */
-function wrongsOf({ inside = 0, withModel = 0 }: Counts): string[] {
+function whatIsOff({ counts: { own = 0 }, surfaces, self }: Cloth): string {
+    if (self) return '';
+    const pairs = own > 0 ? ` (${numbered(own, 'pair', 'pairs')} of its own faces cut each other)` : '';
+    return surfaces ? `, self-collision is off${pairs}` : `, only particles collide${pairs}`;
+}
+
+/** The faults of a cloth in words. @param self  whether it is kept off itself */
+function wrongsOf({ inside = 0, withModel = 0, own = 0 }: Counts, self: boolean): string[] {
     return [
         ...(inside > 0 ? [`${count(inside)} inside the model`] : []),
-        ...(withModel > 0 ? [`${count(withModel)} ${withModel === 1 ? 'pair of faces' : 'pairs of faces'} cut`] : []),
+        ...(withModel > 0 ? [`${numbered(withModel, 'pair', 'pairs')} of faces cut`] : []),
+        ...(self && own > 0 ? [`${numbered(own, 'pair', 'pairs')} of its own faces cut each other`] : []),
     ];
 }
 
@@ -138,7 +159,7 @@ export function showHalf(id: 'half-left' | 'half-right', title: string | undefin
     if (title) half.querySelector('strong')!.textContent = title;
     const cut = withModel === undefined ? '' : withModel === 0 ? ', none cut' : `, ${numbered(withModel, 'pair', 'pairs')} of faces cut`;
     half.querySelector('span')!.textContent = `${inside === 0 ? 'none' : count(inside)} inside${cut}`;
-    half.className = wrongsOf(counts).length > 0 ? 'bad' : 'good';
+    half.className = wrongsOf(counts, false).length > 0 ? 'bad' : 'good';
 }
 
 /** The mesh report: closed or not, and each fault with the colour that marks it on the model. */
@@ -146,24 +167,24 @@ export function showReport({ report, mendedFaces, flippedParts, certainShare }: 
     const parts = report.componentCount === 1 ? 'one part' : `${count(report.componentCount)} parts`;
     const lines = [
         make('p', `${numbered(report.faceCount, 'face', 'faces')}, ${numbered(report.vertexCount, 'vertex', 'vertices')}, ${parts}`),
-        make('p', report.closed ? 'Closed: inside and outside are exact' : 'Open: sides are estimated near the gaps', report.closed ? 'good' : 'bad'),
+        make('p', report.closed ? 'Closed: inside or outside is exact' : 'Open: inside or outside is a guess near the holes', report.closed ? 'good' : 'bad'),
         ...(report.closed ? [] : [make('p', whatOpenMeans(certainShare), 'note')]),
-        ...(isInsideOut(report) ? [make('p', 'Inside out: its faces look inwards', 'bad')] : []),
+        ...(isInsideOut(report) ? [make('p', 'Inside out: the faces point inwards', 'bad')] : []),
         ...faultLine(report.borderEdges.count, 'border edge', 'border edges', FAULT.borderEdges),
         ...faultLine(report.nonmanifoldEdges.count, 'edge of more than two faces', 'edges of more than two faces', FAULT.nonmanifoldEdges),
-        ...faultLine(report.misorientedEdges.count, 'edge between faces turned apart', 'edges between faces turned apart', FAULT.misorientedEdges),
-        ...faultLine(report.duplicateFaces.count, 'face that is there twice', 'faces that are there twice', FAULT.faces),
+        ...faultLine(report.misorientedEdges.count, 'edge of faces with opposite orientation', 'edges of faces with opposite orientation', FAULT.misorientedEdges),
+        ...faultLine(report.duplicateFaces.count, 'duplicate face', 'duplicate faces', FAULT.faces),
         ...faultLine(report.degenerateFaces.count, 'face without area', 'faces without area', FAULT.faces),
     ];
-    if (mendedFaces > 0) lines.push(make('p', `${numbered(mendedFaces, 'face', 'faces')} left out that repeated others`));
-    if (flippedParts > 0) lines.push(make('p', `${numbered(flippedParts, 'inside-out part', 'inside-out parts')} turned round`));
+    if (mendedFaces > 0) lines.push(make('p', `${numbered(mendedFaces, 'duplicate face', 'duplicate faces')} removed`));
+    if (flippedParts > 0) lines.push(make('p', `${numbered(flippedParts, 'inside-out part', 'inside-out parts')} reversed`));
     byId('report').replaceChildren(...lines);
 }
 
-/** For somebody who has never had to think about it. */
+/** For visitors who do not know the term. */
 function whatOpenMeans(certainShare: number): string {
     const share = `${(100 * certainShare).toFixed(certainShare > 0.995 && certainShare < 1 ? 2 : 0)}\u2009%`;
-    return `Its faces do not enclose a solid, so near its gaps what is inside is a guess; in ${share} of the ball around it the answer is certain. As long as surfaces collide, no face of the cloth gets through it all the same. Close its holes in the program it came from, or by "echinus mesh repair", and all answers are certain.`;
+    return `The faces do not enclose a solid. The answer is certain in ${share} of the bounding sphere. Surface collision keeps the faces of the cloth off the model all the same. All answers are certain once the holes are closed, in a modelling program or by "echinus mesh repair".`;
 }
 
 function faultLine(number: number, one: string, many: string, colour: number): HTMLElement[] {

@@ -25,7 +25,7 @@ class Recorder {
      */
     record(canvas: HTMLCanvasElement, left: (seconds: number) => void): Promise<{ clip: Blob; ending: string }> {
         const format = FORMATS.find((type) => typeof MediaRecorder !== 'undefined' && MediaRecorder.isTypeSupported(type));
-        if (!format) return Promise.reject(new Error('this browser cannot record a clip'));
+        if (!format) return Promise.reject(new Error('This browser cannot record a clip.'));
         const recorder = new MediaRecorder(canvas.captureStream(FRAMES_PER_SECOND), { mimeType: format, videoBitsPerSecond: 8e6 });
         this.#recorder = recorder;
         let seconds = SECONDS;
@@ -34,7 +34,7 @@ class Recorder {
         return new Promise((resolve, reject) => {
             const parts: Blob[] = [];
             recorder.ondataavailable = ({ data }) => parts.push(data);
-            recorder.onerror = () => reject(new Error('the browser stopped recording'));
+            recorder.onerror = () => reject(new Error('The browser has stopped recording.'));
             recorder.onstop = () => {
                 left(0);
                 resolve({ clip: new Blob(parts, { type: format }), ending: format.includes('mp4') ? 'mp4' : 'webm' });
@@ -93,7 +93,7 @@ export class Keep {
 
     #saveMesh(): void {
         const kept = this.#wishes.meshes();
-        if (!kept) return say('there is no cloth to save yet');
+        if (!kept) return say('There is no cloth to save yet.');
         saveAs('echinus.obj', new Blob([objText(kept.meshes, ['Cloth and model, by Echinus', ...kept.notices])], { type: 'model/obj' }));
     }
 

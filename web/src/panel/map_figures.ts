@@ -35,8 +35,8 @@ export function showMapFigures({ description, byteCount, buildMs }: MapNews): vo
 /** The meaning of the colours, and how often the two kinds of map differ. @param cells  where they are there */
 export function showLegend(surface: SurfaceNews, cells: CellNews | undefined, shown: Settings['shown']): void {
     if (surface.mapKind === 'distance') return byId('legend').replaceChildren(...layerLegend(surface));
-    if (shown === 'cells' && cells) byId('legend').replaceChildren(...scaleLegend('Faces that a cell of directions lists', 0, cells.largest));
-    else byId('legend').replaceChildren(...scaleLegend('Faces that a query near the surface may have to test', 1, surface.largest));
+    if (shown === 'cells' && cells) byId('legend').replaceChildren(...scaleLegend('Number of faces that a cell of directions lists', 0, cells.largest));
+    else byId('legend').replaceChildren(...scaleLegend('Number of faces that a query near the surface may have to test', 1, surface.largest));
 }
 
 function scaleLegend(title: string, least: number, largest: number): HTMLElement[] {
@@ -57,7 +57,7 @@ function layerLegend({ largest, differences }: SurfaceNews): HTMLElement[] {
 
 function sentenceOn({ near, everywhere }: NonNullable<SurfaceNews['differences']>): string {
     const percent = ({ points, sampleCount }: Difference) => `${((100 * points.length) / 3 / sampleCount).toFixed(2)}\u2009%`;
-    return `Of points near the surface, within ${near.within}\u2009R of it, ${percent(near)} lie on another side than by the exact map; of all in the bounding sphere ${percent(everywhere)}. They are drawn in red.`;
+    return `The answer, inside or outside, differs from that of the exact map at ${percent(near)} of the points within ${near.within}\u2009R of the surface, and at ${percent(everywhere)} of all points in the bounding sphere. The picture shows these points in red.`;
 }
 
 export function forgetRay(): void {
@@ -67,6 +67,6 @@ export function forgetRay(): void {
 export function showRay({ intervals, bands }: FromWorker & { kind: 'ray' }, radius: number): void {
     const inside = intervals.filter((interval) => interval.inside);
     const places = inside.map(({ from, to }) => `${(from / radius).toFixed(3)} to ${(to / radius).toFixed(3)}\u2009R`);
-    const where = places.length === 0 ? 'Outside all the way.' : `Inside from ${places.join(', from ')}.`;
-    byId('ray').textContent = bands.length === 0 ? where : `${where} ${bands.length === 1 ? 'One band' : `${count(bands.length)} bands`}, in blue, in which the map looks for surface.`;
+    const where = places.length === 0 ? 'Outside along its whole length.' : `Inside from ${places.join(', from ')}.`;
+    byId('ray').textContent = bands.length === 0 ? where : `${where} The map looks for surface in ${bands.length === 1 ? 'one band' : `${count(bands.length)} bands`}, in blue.`;
 }

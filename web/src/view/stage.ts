@@ -53,6 +53,9 @@ function axesOf(up: Axis): Axes {
 /** Degrees. Seen from straight above, no direction is up. */
 const MOST_ELEVATION = 89;
 
+/** Radii. The camera stays outside of the model and the cloth on it. */
+const NEAREST = 1.25;
+
 /** How long the camera must be still to count as arrived. */
 const ARRIVAL_MS = 250;
 
@@ -117,7 +120,7 @@ export class Stage {
         this.#controls = new OrbitControls(this.camera, this.#canvas);
         this.#controls.enableDamping = true;
         this.#controls.dampingFactor = 0.12;
-        this.#controls.minDistance = 0.35 * radius; // nearer, the picture is of a model's inside
+        this.#controls.minDistance = NEAREST * radius;
         this.#controls.maxDistance = 20 * radius;
 
         const middle = new THREE.Vector3(...centre).addScaledVector(upward, 0.12 * radius);

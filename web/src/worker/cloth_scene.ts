@@ -1,7 +1,7 @@
 import type { ColliderState, Placement, SceneDescription, Shape } from 'echinus';
 import { type Axis, AXES, UNIT } from '../frames';
 import type { Triple } from '../protocol';
-import type { Settings } from '../settings';
+import { type Settings, collisionOf } from '../settings';
 import type { Act } from './acts/act';
 import { ballOf } from './ball';
 
@@ -26,7 +26,7 @@ export const columnsOf = (particles: number): number => Math.max(2, Math.round(M
 export function sceneFor(settings: Settings, body: Body, act: Act, { falls } = { falls: false }): SceneDescription {
     const { radius } = body;
     const thickness = act.thickness(settings, body);
-    const surfaces = settings.map === 'exact' && settings.surfaces; // the paper's map has no faces
+    const { surfaces, self } = collisionOf(settings);
     const own = act.scene(settings, body);
     return {
         colliders: [{ model: MODEL }, floorOf(body), ...(settings.hand === 'ball' ? [ballOf(body)] : [])],
@@ -35,7 +35,7 @@ export function sceneFor(settings: Settings, body: Body, act: Act, { falls } = {
         material: { ...cottonBy(radius), friction: settings.friction, ...own.material },
         gravity: UNIT[body.up].map((part) => -9.81 * radius * part) as [number, number, number],
         surface_collision: surfaces,
-        self_collision: surfaces && settings.self,
+        self_collision: self,
         untangle: surfaces && falls, // it may intersect where particles alone have collided
         at_rest: { distance: 0.001 * radius, speed: 0.1 * radius },
     };

@@ -60,9 +60,10 @@ function makeSample(echinus: Echinus, sample: Exclude<Sample, 'horse'>, act: Act
 
 /**
  * OBJ, PLY, STL and OFF are read by Echinus; 3DS and glTF by three.js, which is loaded only then.
+ * @param companions  files that a .gltf may refer to
  * @throws Error with a sentence that begins with the file's name; so does the returned function
  */
-export async function prepareFile(name: string, bytes: ArrayBuffer): Promise<Reading> {
+export async function prepareFile(name: string, bytes: ArrayBuffer, companions: readonly File[] = []): Promise<Reading> {
     const ending = name.toLowerCase().split('.').pop();
     if (ending === 'glb' && !beginsAs(bytes, 'glTF')) throw new Error(`${name}: it does not begin as a .glb file does, with "glTF"`);
     switch (ending) {
@@ -70,7 +71,7 @@ export async function prepareFile(name: string, bytes: ArrayBuffer): Promise<Rea
             return welding(name, await described(name, async () => (await import('./loaders')).read3ds(bytes)));
         case 'glb':
         case 'gltf':
-            return welding(name, await described(name, async () => (await import('./loaders')).readGltf(bytes)));
+            return welding(name, await described(name, async () => (await import('./loaders')).readGltf(bytes, companions)));
         case 'obj':
         case 'ply':
             return (echinus) => ({ name, mesh: echinus.readMesh(bytes, name), up: 'y' });

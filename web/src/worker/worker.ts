@@ -140,10 +140,10 @@ async function handle(message: ToWorker): Promise<void> {
     }
 }
 
-async function open({ turn, settings, page, file }: ToWorker & { kind: 'open' }): Promise<void> {
+async function open({ turn, settings, page, file, companions }: ToWorker & { kind: 'open' }): Promise<void> {
     const report = (stage: Stage) => tell({ kind: 'progress', turn, stage });
     report('reading');
-    const read = await (file ? readFile(file) : fetchSample(settings.model, page));
+    const read = await (file ? readFile(file, companions) : fetchSample(settings.model, page));
     modelIsThere = true;
     const echinus = await starting;
     const model = read(echinus);
@@ -156,11 +156,11 @@ async function open({ turn, settings, page, file }: ToWorker & { kind: 'open' })
 }
 
 /** Queued with everything else, so that the later of two files stays. */
-async function readFile(file: File): Promise<Reading> {
+async function readFile(file: File, companions: readonly File[] = []): Promise<Reading> {
     const bytes = await file.arrayBuffer().catch(() => {
         throw new Error(`${file.name}: the browser cannot read this file`);
     });
-    return prepareFile(file.name, bytes);
+    return prepareFile(file.name, bytes, companions);
 }
 
 /** A cloth that diverged stops; its last positions stay visible. */
