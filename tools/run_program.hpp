@@ -5,8 +5,8 @@
 #include <functional>
 #include <string>
 
-/// What main() does in every program of the command line: parses the arguments, runs the actions that they
-/// name, and says on one line of standard error why it failed.
+/// The body of main() in every program of the command line: parses the arguments, runs the actions that they
+/// name, and writes one line to standard error if it fails.
 /// @param set_up  adds the program's commands and options; may throw what actions throw
 /// @returns the exit status: 0 success, 1 failure, 2 usage error
 /// @pre the program has no other threads yet

@@ -70,7 +70,7 @@ function asFile(file, html) {
     return `<${tag} title="${inMarkup(file)}">${html}</${tag}>`;
 }
 
-/** What links call a heading, as on GitHub: without punctuation, and numbered where another has that name. */
+/** The anchor of a heading, as on GitHub: without punctuation, and numbered if another heading has the same name. */
 function nameOf(text, names) {
     const plain = text.toLowerCase().replace(/[^\p{L}\p{M}\p{N}\p{Pc} -]/gu, '').replaceAll(' ', '-');
     let name = plain;

@@ -14,7 +14,7 @@ namespace echinus {
 
 using AnyMap = std::variant<DistanceMap, ExactMap>;
 
-// Templates, so that a map of a known kind is not converted to the variant.
+// They are templates, so that a map of a known kind is not converted to the variant.
 
 template <std::same_as<AnyMap> Map>
 bool contains(const Map& map, Vec3f point_local) noexcept {

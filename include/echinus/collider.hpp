@@ -101,7 +101,7 @@ std::vector<Vec3f> vertices_at(const VertexCache& cache, double seconds);
 // and may run on any number of threads. A point is transformed to the local frame in double and rounded to
 // float there, so a collider may be far from the origin as long as the caller's float positions resolve it. A
 // point that overflows float in the local frame is outside. A point with NaN or infinity is outside and has
-// no contact and no crossing. The cost is that of the map's query, plus the conversion of the pose to a
+// no contact and no crossing. The cost is that of the map's query, plus that of converting the pose to a
 // matrix, once per batch.
 // @pre the pose is finite and its rotation has unit length, the scale is finite and has no 0, and a custom
 // map is not null. This is not checked: with another rotation the answers are meaningless.
@@ -147,8 +147,8 @@ struct ContactArrays {
 
 /// Finds the contacts that contacts_batch() finds for one collider after the other, bit for bit, without the
 /// points that have none. It suits solvers that keep separate arrays, have many points and few contacts, or
-/// many colliders. Contacts ascend by collider, then by point. A collider whose bounding sphere is away from
-/// all points costs nothing more.
+/// many colliders. Contacts ascend by collider, then by point. Colliders whose bounding sphere is away from
+/// all points cost next to nothing.
 ///
 /// With points in double the world may be arbitrarily large: points are rounded to float only in the
 /// collider's local frame, and `points` of the contacts are the map's answers transformed to the world in
@@ -171,8 +171,8 @@ std::size_t contacts_into(std::span<const Collider> colliders, StridedSpan<const
 /// from the axis. The scale is the same at both ends.
 ///
 /// `point` and `normal` are in the world, with the collider in its present pose: `point` is the present
-/// position of the surface point that was met, or `to_world` if nothing is met. `entering` is that of the
-/// map's sweep. Distance maps and custom maps have no sweep: with them nothing is met.
+/// position of the surface point that was met, or `to_world` without a crossing. `entering` is that of the
+/// map's sweep. Distance maps and custom maps have no sweep, so no crossing is found.
 SweepHit sweep(const Collider& collider, const RigidTransform& previous_pose, Vec3f from_world,
                Vec3f to_world) noexcept;
 

@@ -14,8 +14,8 @@ namespace echinus {
 /// A user-defined structure that a collider queries in place of a map: a distance field, an analytic shape,
 /// another library. Derive from it and pass a shared pointer to a collider (collider.hpp).
 ///
-/// A simulation pushes particles to the contacts' points. It promises less than with an exact map: nothing is
-/// swept or proven, so a particle may pass through a part that is thinner than its path in one frame.
+/// A simulation pushes particles to the contacts' points. It promises less than with an exact map: particles
+/// are not swept, so one may pass through a part that is thinner than its path in one frame.
 class CustomMap {
   public:
     virtual ~CustomMap() = default;
@@ -28,10 +28,10 @@ class CustomMap {
     virtual void contains_batch(std::span<const Vec3f> points_local,
                                 std::span<std::uint8_t> inside) const noexcept = 0;
 
-    /// For each particle that is inside, or outside and no farther from the surface than the margin: the
-    /// point of the surface to which it is pushed out, and the normal there. Farther particles may get a
-    /// contact as well: a map that measures along rays has to look farther along them than the margin to find
-    /// all.
+    /// Finds a contact for each particle that is inside, or outside and at most the margin away from the
+    /// surface: the point of the surface to which it is pushed out, and the normal there. Particles that are
+    /// farther away may get a contact as well, since a map that measures along rays must search beyond the
+    /// margin to find all of them.
     ///
     /// The collider normalises normals and treats a contact with a non-finite point, normal or depth as none.
     /// A particle that is inside and has no normal stays where it is.

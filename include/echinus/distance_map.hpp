@@ -23,7 +23,7 @@ ECHINUS_EXPORT_BEGIN
 /// All points are in the frame and unit of the mesh from which the map was built ("local").
 namespace echinus {
 
-/// The treatment of mesh vertices that linear interpolation between samples misses (the paper's figure 1b).
+/// The treatment of mesh vertices that linear interpolation between samples cuts off (the paper's figure 1b).
 enum class VertexCorrection : std::uint8_t {
     None,  ///< entries are the exact crossings
     Paper, ///< the four samples around a vertex are increased by the missing distance, in every layer
@@ -77,9 +77,9 @@ struct DistanceMapStatistics {
 };
 
 /// A map as plain arrays, wherever they are stored: in a DistanceMap, in a mapped file, or in JavaScript's
-/// memory. All queries take it. It owns nothing and is cheap to copy. Invariants (validate() in
-/// src/distance_map checks them, of untrusted bytes and of what a build made): entry_offsets ascends from 0
-/// to the number of entries; the entries of a direction ascend within [0, largest_entry()].
+/// memory. All queries take it. It owns nothing and is cheap to copy. validate() in src/distance_map checks
+/// its invariants, for untrusted bytes and for built maps: entry_offsets ascends from 0 to the number of
+/// entries; the entries of a direction ascend within [0, largest_entry()].
 struct DistanceMapView {
     Vec3f centre;     ///< C, local
     float radius = 0; ///< R: every vertex of the mesh lies within R of C

@@ -79,8 +79,8 @@ class ExactMap {
   public:
     /// Builds the map on all cores. The same mesh and options give the same bytes for any number of threads.
     /// @param mesh  any mesh. If it is open or a triangle soup, the winding number is the generalised one
-    /// (Jacobson et al. 2013). Gaps in which that stays away from every half have one answer; everywhere else
-    /// it is computed for each particle, in about a microsecond
+    /// (Jacobson et al. 2013). Gaps in which that number stays away from every half have one stored answer;
+    /// everywhere else it is computed for each particle, in about a microsecond
     /// @throws Error InvalidMesh as inspect() does, or when the bounding radius lies outside [1e-15, 1e15];
     /// InvalidOptions for divisions beyond kMaxDivisions, divisions together with a budget, or a budget that
     /// the coarsest map exceeds
@@ -112,7 +112,7 @@ class ExactMap {
 };
 
 // ---- Queries. They are noexcept and may run on any number of threads. Queries of one particle do not
-// allocate
+// allocate.
 //
 // A point with NaN or infinity is outside and has no contact; with NaN this is not certain. On the lattice no
 // particle lies on the surface: it is treated as if it were moved by (e, e^2, e^3), with e infinitely small
@@ -239,7 +239,7 @@ void signed_distance_batch(const ExactMapView& map, StridedSpan<const Vec3f> poi
 struct SweepHit {
     float fraction = 1; ///< position on the segment: 0 at `from`, 1 at `to`; 1 without a crossing
     Vec3f point;        ///< from + fraction (to - from), local; `to` without a crossing
-    /// Outward unit normal of the face; 0 if nothing is met. If both sides of the face are solid, or neither
+    /// Outward unit normal of the face; 0 without a crossing. If both sides of the face are solid, or neither
     /// is, it points out of the face's front.
     Vec3f normal;
     std::int32_t face = Contact::kUnknownFace; ///< its index in the mesh
@@ -255,12 +255,12 @@ struct SweepHit {
 /// away the ends are, so all finite points are allowed. If the ends are more than 10^6 R apart, the float
 /// `fraction` is less accurate than `point`.
 ///
-/// On a closed surface sweep() agrees with contains(): if nothing is met, the winding number is the same at
-/// both ends. On an open surface it may differ: the generalised winding number also crosses one half where
-/// there is no face, so contains() may differ at the ends of a segment that meets nothing.
+/// On a closed surface sweep() agrees with contains(): without a crossing the winding number is the same at
+/// both ends. On an open surface the generalised winding number also crosses one half where there is no face,
+/// so contains() may differ at the ends of a segment without a crossing.
 ///
-/// If a point has NaN or infinity, nothing is met. The query does not allocate. A segment within one gap of a
-/// cell takes a few comparisons; other segments test the faces whose boxes they meet before the first
+/// There is no crossing if a point has NaN or infinity. The query does not allocate. A segment within one gap
+/// of a cell takes a few comparisons; other segments test the faces whose boxes they meet before the first
 /// crossing.
 SweepHit sweep(const ExactMapView& map, Vec3f from_local, Vec3f to_local) noexcept;
 

@@ -11,8 +11,8 @@
 
 ECHINUS_EXPORT_BEGIN
 
-/// Exact tests for intersecting faces, which verify results, for instance of a simulation. They are decided
-/// exactly on the float coordinates, without rounding and tolerances. The answers are the same on every
+/// Exact tests for intersecting faces, for instance to verify the results of a simulation. They decide
+/// exactly on the float coordinates, without rounding or tolerances. The answers are the same on every
 /// machine.
 namespace echinus {
 

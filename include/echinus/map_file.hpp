@@ -18,8 +18,8 @@ ECHINUS_EXPORT_BEGIN
 /// file is then read in place.
 namespace echinus {
 
-/// The supported versions. Files are written in the older version if possible: only maps with an origin
-/// (ExactMapView::origin) need the newer version, since an older reader would misplace them.
+/// The versions that load_map() reads. Files are written in the older version if possible: only maps with an
+/// origin (ExactMapView::origin) need the newer version, since an older reader would misplace them.
 inline constexpr std::uint32_t kMapFileVersion = 2, kMapFileVersionWithoutOrigin = 1;
 
 /// Optional notes in the file of a map. They are not part of the map: without notes, the same map gives the

@@ -113,8 +113,8 @@ struct RepairOptions {
     bool drop_loose_slivers = false;
     /// Flips faces so that they agree with the majority of their neighbours, in every patch that is closed
     /// without the rest of the mesh; a patch consists of faces joined by edges with exactly two faces. Blocks
-    /// that share an edge are such patches; a block that shares a side, or all edges of one, is not, since
-    /// flipping it takes a guess. The result may be inside out without flip_inside_out.
+    /// that share an edge are such patches. A block that shares a side with another, or all edges of a side,
+    /// is not: its orientation would be a guess. The result may be inside out without flip_inside_out.
     bool orient_faces = false;
 
     /// Fills holes whose border has at most this number of edges, up to kMaxHoleEdges; 0 fills none. A hole

@@ -61,8 +61,8 @@ struct SolverStep {
 /// use different objects at the same time, but only one thread may use an object at a time.
 class ParticleCollision {
   public:
-    /// A particle whose position is not finite, or farther than this many units from the origin along an
-    /// axis, counts as exploded.
+    /// A particle counts as exploded if its position is not finite, or is farther than this many units from
+    /// the origin along an axis.
     static constexpr float kFarthest = 1e12F;
 
     /// @param colliders  with any kind of map, in their initial poses; their velocities are ignored, but must
@@ -96,15 +96,16 @@ class ParticleCollision {
 
     /// Corrects the particles after a step of the solver, and moves the colliders.
     ///
-    /// A particle that comes closer to a surface than the thickness is moved out along the normal, and back
-    /// along the surface by friction. Its velocity changes accordingly and then has no component into the
+    /// A particle closer to a surface than the thickness is moved out along the normal, and friction reduces
+    /// its motion along the surface. Its velocity changes accordingly and then has no component into the
     /// surface, relative to the moving material of the collider; impacts do not bounce. Velocities are those
     /// at the end of the step; a solver without velocities may use (position - previous) / seconds.
     ///
     /// A particle whose position has exploded stays as it is and collides with nothing; one whose previous
     /// position has exploded starts at its present position. A velocity that is not finite is not changed. If
     /// a particle's previous position is not that at the end of the last step, because the solver moved it
-    /// elsewhere, collision starts afresh for it; with another number of particles, for all.
+    /// elsewhere, collision starts afresh for it. If the number of particles changes, it starts afresh for
+    /// all.
     ///
     /// The cost is O(n) for each collider that particles may be near, by bounding spheres: about 20 ns for a
     /// particle away from surfaces, and less than 1 us for a particle that moves along them

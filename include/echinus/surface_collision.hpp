@@ -35,10 +35,10 @@ struct SurfaceCollisionOptions {
 /// of SolverKind::Newton for a surface without stiffness.
 ///
 /// After correct() no face intersects a model or, with self_collision, another face. The exceptions, which
-/// unresolved_count() counts, are those of SimulationOptions::surface_collision. With a collider without an
-/// exact map only particles collide. Contact begins to push at the thickness, and harder the closer a face
-/// is, so after a hard impact the distance may be small. Copies are independent. Different threads may use
-/// different objects at the same time, but only one thread may use an object at a time.
+/// unresolved_count() counts, are those of SimulationOptions::surface_collision. Only particles collide with
+/// a collider that has no exact map. Contact begins to push at the thickness, and pushes harder the closer a
+/// face is; after a hard impact the distance may therefore be small. Copies are independent. Different
+/// threads may use different objects at the same time, but only one thread may use an object at a time.
 class SurfaceCollision {
   public:
     /// @param positions  [n] the initial positions, at which no faces may intersect (but see untangle)
@@ -67,10 +67,10 @@ class SurfaceCollision {
     /// positions(), at which the last one ended.
     ///
     /// A particle counts as corrected if it ends farther than a thousandth of the thickness from the solver's
-    /// position. Other particles keep the solver's bits in the array, so only positions() is exactly free of
-    /// intersections. The velocity of a corrected particle changes accordingly, and after an impact it has no
-    /// component into the surface. A particle whose position is not finite, or more than 1e12 units from the
-    /// previous one, keeps its previous position as an obstacle for others, and is not corrected.
+    /// position. For other particles the array keeps the solver's position, so only positions() is exactly
+    /// free of intersections. The velocity of a corrected particle changes accordingly, and after an impact
+    /// it has no component into the surface. A particle whose position is not finite, or more than 1e12 units
+    /// from the previous one, keeps its previous position as an obstacle for others, and is not corrected.
     ///
     /// The cost is that of a frame of a simulation with surface_collision (docs/surfaces_measured.md). The
     /// function allocates when its arrays of pairs grow.

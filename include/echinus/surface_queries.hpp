@@ -68,14 +68,14 @@ struct TriangleSweepHit {
 /// The query uses conservative advancement, until the triangle is within R / 2^17 of the surface or, if that
 /// is more, within 10^-13 of the distance of the path's ends from the centre. So if `fraction` is less than
 /// 1, the triangle is that close to the surface there, except for the rounding of `fraction` itself. A path
-/// that begins or ends farther than 10^11 R from the centre is not followed: nothing is met. The query does
-/// not allocate.
+/// that begins or ends farther than 10^11 R from the centre is ignored: the triangle meets nothing. The query
+/// does not allocate.
 ///
 /// The cost is up to 16 clearances. A triangle that has not arrived by then, because it slides along the
 /// surface or leaves it slowly, is then advanced separately for each face within its box, until the first is
 /// met. This takes a few distances of two triangles per face, and at most 36 + 2 log2(L / R) if its corners
 /// move alike; L is the length of the path. The path of a triangle that turns closely around an edge is
-/// divided: that may take about ten thousand distances, and more the farther its corners are.
+/// divided; this may take about ten thousand distances, and more if its corners are far away.
 TriangleSweepHit sweep(const ExactMapView& map, const TrianglePoints& from_local,
                        const TrianglePoints& to_local) noexcept;
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-/// What was measured, a line of a CSV file each: for lab/bench/pages/ and other readers.
+/// Measurements as lines of a CSV file, for lab/bench/pages/ and other readers.
 class Records {
   public:
     using Record = std::map<std::string, std::string>;

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <filesystem>
 
-/// What decides sides.
+/// The reference for inside or outside.
 enum class SideJudge : std::uint8_t {
     Parity,        ///< CGAL's exact predicates, for the given coordinates; of a closed mesh without overlaps
     WindingNumber, ///< the generalised winding number is above 1/2: the sum over all faces, in double

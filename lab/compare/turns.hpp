@@ -20,7 +20,7 @@ struct Part {
 struct Racer {
     /// Does its work for a part, in one call.
     std::function<void(Part)> run;
-    /// What it does in a turn: all items in one part, or a sample of them.
+    /// Its work in a turn: all items in one part, or a sample of them.
     std::vector<Part> parts;
 };
 
@@ -46,9 +46,9 @@ struct Pace {
 /// another's, are then in the caches, as they would be in a program that uses one of them.
 std::vector<Pace> take_turns(const std::vector<Racer>& racers, const TurnOptions& options);
 
-/// What a racer should do in a turn: all items in one part if a short trial says that this takes at most
-/// `patience_seconds`, and otherwise as many parts of a thousand items as it can do in that time, at least
-/// ten, spread evenly over all.
+/// The work of a racer in a turn: all items in one part if this takes at most `patience_seconds` according to
+/// a short trial; otherwise as many parts of a thousand items as it can do in that time, at least ten, spread
+/// evenly over all items.
 std::vector<Part> parts_for(const std::function<void(Part)>& run, std::size_t item_count,
                             double patience_seconds);
 

@@ -30,10 +30,10 @@ class System {
     /// All that a query reads.
     virtual std::size_t byte_count() const = 0;
 
-    /// What byte_count() sums up, for the foot of a table.
+    /// The parts that byte_count() includes, for the footnote of a table.
     virtual std::string_view counted() const = 0;
 
-    /// Is each particle inside? What is not finite is outside.
+    /// Decides which particles are inside. A particle that is not finite is outside.
     /// @param inside  [n] 1 or 0. @pre points.size() == inside.size()
     virtual void contains_batch(std::span<const Vec3f> points, std::span<std::uint8_t> inside) const = 0;
 

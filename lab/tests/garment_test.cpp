@@ -27,7 +27,7 @@ class Garment : public CommandLineTest {
         CommandLineTest::SetUp();
         if (std::system("python3 --version >/dev/null 2>&1") != 0) GTEST_SKIP() << "there is no python3";
     }
-    /// What the script makes of these arguments.
+    /// Runs the script with these arguments. @return the file that it made
     std::filesystem::path make(const std::string& arguments) const {
         const std::filesystem::path made = path("made.obj");
         const std::string script = "'" + (kSource / "lab" / "garment").string() + "' ";

@@ -29,7 +29,7 @@ Vec3<T> turned_back(PoleAxis axis, const Vec3<T>& v) {
     return turned_last(axis == PoleAxis::X ? PoleAxis::Y : PoleAxis::X, v);
 }
 
-/// What grids of squares have in common: the distance is interpolated bilinearly between the four samples
+/// The common base of grids of squares: the distance is interpolated bilinearly between the four samples
 /// around a direction.
 class BilinearGrid {
   public:

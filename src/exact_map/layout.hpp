@@ -10,7 +10,7 @@
 #include <span>
 #include <vector>
 
-/// What build and queries share about an exact map's arrays.
+/// Constants and conversions for an exact map's arrays that the build and the queries share.
 namespace echinus {
 
 // Cells are numbered in 32 bits, with a sign in vectors, and so are the products that number them.

@@ -84,7 +84,7 @@ class Workers {
     std::unique_ptr<Team> team_;         ///< none for a single worker
 };
 
-/// What the pieces of a parallel loop append to one list, in the order of the pieces.
+/// A list to which the pieces of a parallel loop append, in the order of the pieces.
 template <typename T>
 class PiecewiseList {
   public:

@@ -13,7 +13,7 @@
 
 namespace echinus {
 
-// What all kinds of maps share between the file and the memory that queries read.
+// Conversions between the tables of a file and the arrays that queries read, for all kinds of maps.
 
 static_assert(std::endian::native == std::endian::little, "map files are little-endian and used in place");
 

@@ -32,7 +32,7 @@ std::string_view text_of(const MeshSource& source);
 /// With ASCII capitals as small letters, whatever the locale.
 std::string lower_case(std::string_view text);
 
-/// What a path's name ends in, with the dot, in lower case: ".obj" for "A/Horse.OBJ".
+/// The extension of a path's name, with the dot, in lower case: ".obj" for "A/Horse.OBJ".
 std::string lower_case_ending(const std::filesystem::path& path);
 
 /// The text with ? for bytes that do not print, so that it can stand in a sentence.

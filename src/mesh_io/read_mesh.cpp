@@ -57,7 +57,7 @@ std::vector<std::array<std::uint32_t, 2>> edges_of(const PolygonMesh& polygons) 
     return edges;
 }
 
-/// What `read` makes of the file's bytes.
+/// The result of `read` for the file's bytes.
 template <typename Read>
 auto read_from(const std::filesystem::path& path, const Read& read) {
     const auto source = [&](std::span<const std::byte> bytes) {

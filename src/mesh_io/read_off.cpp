@@ -118,7 +118,7 @@ class OffReader {
         for (std::size_t i = 0; !one_line_each_ && i < surplus_count_; ++i) scanner_.skip_number();
     }
 
-    /// Whatever the lines, the rest of a face's line is its colour.
+    /// Numbers may be wrapped over lines, but the rest of a face's line is its colour.
     void read_face(const std::string& what) {
         begin_element(what);
         const std::size_t corner_count = scanner_.next_count("the number of the face's corners");

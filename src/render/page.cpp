@@ -13,7 +13,7 @@
 
 namespace echinus {
 
-// What is drawn over traced pictures: lettering, lines, the arrangement of several on one page.
+// Draws lettering and lines over traced pictures, and arranges several pictures on one page.
 
 namespace {
 

@@ -292,8 +292,8 @@ void add_options(Command command, BuildArguments& arguments) {
         .show_default();
     command.add_flag(
         "--repair", arguments.repair.repair,
-        "Repair the mesh first, as far as that needs no guess: close seams, drop duplicate faces, "
-        "doubled patches and loose slivers, flip faces and inside-out parts");
+        "First make the repairs that need no guess: close seams, drop duplicate faces, doubled patches "
+        "and loose slivers, flip faces and inside-out parts");
     add_solid_options(command, arguments.repair);
     command.add_flag("--allow-open", arguments.allow_open,
                      "Accept a mesh that is not closed: near its holes the answers of an exact map are "

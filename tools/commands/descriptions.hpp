@@ -66,7 +66,7 @@ Json to_json(const echinus::RepairReport& report);
 /// The same as a phrase: "2 duplicate faces dropped, 1 inside-out component turned", or "nothing to mend".
 std::string to_text(const echinus::RepairReport& report);
 
-/// What --repair would do to a mesh, and whether the result is closed.
+/// The repairs that --repair would make, and whether the result is closed.
 struct RepairOutlook {
     echinus::RepairReport report;
     bool closed_then = false;

@@ -83,7 +83,7 @@ double points_step(const AnyMap& map, const PointSource& source) {
     return 2 * float_rounding(std::max({std::abs(origin.x), std::abs(origin.y), std::abs(origin.z)}));
 }
 
-/// What only an exact map has, a block at a time.
+/// Computes the fields that only exact maps have, one block at a time.
 struct ExactAnswers {
     const AnyMap& map;
     std::vector<float> signed_distances, winding_numbers; ///< as large as a block, or not wanted

@@ -6,7 +6,7 @@
 
 #include <cstdint>
 
-/// What `build` and `mesh repair` may do to a mesh.
+/// The repairs that `build` and `mesh repair` can make.
 struct RepairArguments {
     bool repair = false; ///< what needs no guess
     /// The rest, as RepairOptions has it.

@@ -59,7 +59,7 @@ struct LoadedColliders {
     bool deforms(std::size_t collider) const { return caches[collider].samples != nullptr; }
     /// Scaled, not moved.
     echinus::TriangleMesh mesh_at(std::size_t collider, double seconds) const;
-    /// What judges them then.
+    /// The references by which the colliders are judged at that time.
     std::vector<JudgedModel> judged_at(double seconds, unsigned thread_count) const;
 };
 

@@ -478,7 +478,7 @@ void add_options(Command command, SimulateArguments& arguments) {
     command
         .add("--threads", &arguments.thread_count,
              "Threads that build the map, simulate and test for intersections; 0: all cores. By default all "
-             "cores, and for the simulation the scene's thread_count")
+             "cores build and test, and the simulation uses the scene's thread_count")
         .range(0, 1024)
         .type_name("COUNT");
     add_choice(command, "--judge", arguments.judges_all,

@@ -23,7 +23,7 @@ struct SavedLoad {
     echinus::Load load;
 };
 
-/// What is said about a collider.
+/// The part of a report about a collider.
 struct ColliderResult {
     std::string mesh_name;        ///< of the file in the folder
     std::string cache_name;       ///< of that with its vertices over time; empty where it does not deform
@@ -39,7 +39,7 @@ struct WorstFrame {
     std::uint32_t frame = 0; ///< the first with so many
 };
 
-/// What was seen on the way.
+/// The frames with the most intersecting pairs during the simulation.
 struct WorstFrames {
     std::size_t judged_count = 0;
     WorstFrame with_models, own;
@@ -54,7 +54,7 @@ struct WorstFrames {
     }
 };
 
-/// What `simulate` reports when it is done.
+/// The data that `simulate` reports at the end.
 struct SimulationResult {
     const std::string& scene_name;
     const echinus::Simulation& simulation;

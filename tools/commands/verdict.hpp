@@ -33,7 +33,7 @@ PairCounts count_pairs(const echinus::Simulation& simulation, std::span<const ec
 /// inside stays inside.
 echinus::TriangleMesh scaled(echinus::TriangleMesh mesh, const echinus::Vec3d& scale);
 
-/// What judges a collider, whatever map the simulation uses.
+/// The reference by which a collider is judged, whatever map the simulation uses.
 struct JudgedModel {
     echinus::TriangleMesh mesh; ///< neither scaled nor moved
     echinus::ExactMap map;      ///< of that mesh

@@ -70,8 +70,8 @@ class PointList final : public PointSource {
     std::size_t read_count_ = 0;
 };
 
-/// What the header of a .npy file says of the array behind it (NumPy enhancement proposal 1; the format's
-/// versions 1 to 3).
+/// The header of a .npy file, which describes the array that follows it (NumPy enhancement proposal 1; the
+/// format's versions 1 to 3).
 struct NpyHeader {
     std::string descr; ///< the type of the elements, such as "<f4"; a list of fields begins with "["
     bool fortran_order = false;

@@ -19,8 +19,8 @@ std::vector<std::array<std::uint32_t, 2>> threads_of(const echinus::Deformable& 
 std::vector<echinus::Triangle> surface_of(const echinus::Deformable& cloth);
 std::vector<echinus::Triangle> surface_of(const echinus::MeshAndEdges& cloth);
 
-/// What files hold of a deformable: its faces, its threads, and the particles that they use. Those inside a
-/// soft body are left out; the others keep their order.
+/// The parts of a deformable that files contain: its faces, its threads, and the particles that they use, in
+/// their order. Interior particles of a soft body are left out.
 class VisibleSurface {
   public:
     explicit VisibleSurface(const echinus::Deformable& deformable);

@@ -11,7 +11,7 @@ interface Entry {
 const PATIENCE_MS = 1000;
 
 export class Address {
-    /** What was opened since the page was loaded, by the keys in the history. */
+    /** The files that were opened since the page was loaded, by the keys in the history. */
     readonly #files = new Map<string, File>();
     #again = 0;
     #left: (() => void) | undefined;
@@ -39,7 +39,7 @@ export class Address {
         return this.#file ? undefined : this.#entry.file?.name;
     }
 
-    /** What the page shows, in place of what the address said. A file has an entry of its own: opening one adds an entry, and so does opening a sample after it. */
+    /** Replaces the address by that of the present settings. A file has its own entry: opening one adds an entry, and so does opening a sample after it. */
     show(settings: Settings, file: File | undefined): void {
         clearTimeout(this.#again);
         const entry: Entry = file ? { file: { key: this.#keyOf(file), name: file.name } } : {};

@@ -47,7 +47,7 @@ class App {
     #asked: Opening = { turn: 0, file: undefined };
     /** Counts the requests that change the worker's state. */
     #turn = 0;
-    /** What is shown, and what has been requested. */
+    /** The models that are shown and that have been requested. */
     #openings: Opening[] = [];
     #model: ModelNews | undefined;
     #map: MapNews | undefined;
@@ -211,7 +211,7 @@ class App {
         this.#open(before?.file);
         remark('Cancelled.');
     }
-    /** What model, map and cloth are made by, as the last answer reported it. */
+    /** The settings of the present model, map and cloth, as the last answer reported them. */
     #inForce: Settings | undefined;
 
     #fail({ sentence, code, turn }: FromWorker & { kind: 'failed' }): void {
@@ -364,7 +364,7 @@ class App {
         byId('halves').hidden = true;
     }
 
-    /** What the scene shows in one half. */
+    /** Updates the objects that the scene shows in one half. */
     #showSide(side: Side, hidden: Side): void {
         const cloth = this.#settings.view === 'cloth';
         side.view.group.visible = cloth;
@@ -420,7 +420,7 @@ class App {
 
     // ---- The visitor's actions
 
-    /** What the visitor chooses ends the tour. */
+    /** Applies a choice of the visitor, which ends the tour. */
     #follow(settings: Settings, key: keyof Settings): void {
         this.#tour.leave(); // which may have shown another cut than the visitor's
         this.#change({ ...this.#settings, [key]: settings[key] }, key);

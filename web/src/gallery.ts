@@ -10,7 +10,7 @@ interface Example {
     model: Sample;
 }
 
-/** What the gallery shows; scripts/web --pictures takes their pictures. */
+/** The examples of the gallery; scripts/web --pictures takes their pictures. */
 const EXAMPLES: readonly Example[] = [
     { name: 'horse', title: 'A cloth on a horse', caption: 'no ear comes through', link: '', model: 'horse' },
     { name: 'torus', title: 'A cloth on a torus', caption: 'with 2\u2009500 particles', link: 'model=torus&particles=2500', model: 'torus' },

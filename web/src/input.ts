@@ -35,7 +35,7 @@ function isOfControl({ key, target }: KeyboardEvent): boolean {
 }
 
 interface PointerWishes {
-    /** What the pointer does; undefined: it only looks. */
+    /** The action of the pointer; undefined: it only turns the view. */
     hand(): Settings['hand'] | undefined;
     /** The cloth in the half of the picture at this share of its width. */
     clothAt(x: number): ClothView;
@@ -75,7 +75,7 @@ export function enablePointer(canvas: HTMLCanvasElement, stage: Stage, wishes: P
         ray.setFromCamera(stage.inHalf(x, (clientY - top) / height), stage.camera);
         return x;
     };
-    /** What of it the pointer could hold. */
+    /** The point of the cloth or model that the pointer could grab. */
     const under = (x: number, hand: Settings['hand']) => {
         const onModel = ray.intersectObject(wishes.obstacle, false)[0];
         const onCloth = wishes.clothAt(x).pick(ray);

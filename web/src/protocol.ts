@@ -58,7 +58,7 @@ export type FromWorker =
     /** The last answer to a turn, failed or not: the turn that opened the model shown, if there is one, and the settings in force. */
     | { kind: 'settled'; turn: number; inForce?: { turn: number; settings: Settings } };
 
-/** What takes time when a model is opened. */
+/** The stages of opening a model that take time. */
 export type Stage = 'reading' | 'mending' | 'building the map' | 'laying the cloth';
 
 export interface ClothNews {
@@ -110,7 +110,7 @@ export interface ModelNews {
     flippedParts: number;
     centre: Triple;
     radius: number;
-    /** What the camera shows. */
+    /** The sphere that the camera shows. */
     sight: { centre: Triple; radius: number };
     /** The height of the ground, along up. */
     floor: number;
@@ -186,7 +186,7 @@ export interface Cuts {
     own: number;
     cutFaces: Uint32Array;
     ownFaces: Uint32Array;
-    /** What it took. */
+    /** The time that the count took. */
     ms: number;
 }
 

@@ -20,7 +20,7 @@ export interface Settings {
     surfaces: boolean;
     /** And off each other; only together with `surfaces`. */
     self: boolean;
-    /** What particles keep from the model, in distances between neighbouring particles. */
+    /** The distance that particles keep from the model, in spacings of the particles. */
     thickness: number;
     /** Radii of the model per second. */
     wind: number;
@@ -30,13 +30,13 @@ export interface Settings {
     /** Mend what Mesh.repair() can mend, before the map is built. */
     mend: boolean;
     colour: 'fabric' | 'depth';
-    /** What the pointer does: it pulls the cloth, leads a ball, or holds the model. */
+    /** The action of the pointer: it pulls the cloth, moves a ball, or grabs the model. */
     hand: 'cloth' | 'ball' | 'model';
-    /** What falls beside the cloth, in the other half of the picture: the same on the paper's map, or with its particles alone colliding. */
+    /** The cloth in the other half of the picture: the same on the paper's map, or with collision of particles only. */
     beside: 'nothing' | 'map' | 'particles';
     /** How the cloth is drawn; 'auto' depends on how long a picture takes. */
     look: 'auto' | 'fine' | 'light';
-    /** What the colours show in the view of the map. */
+    /** The quantity that the colours show in the view of the map. */
     shown: 'surface' | 'cells';
     /** Where the map is cut open, along the view's up axis: -1 to 1 radii. 1 leaves it whole. */
     slice: number;
@@ -55,7 +55,7 @@ const GRIDS = ['spherical', 'octahedral', 'cube', 'ellipsoidal'] as const;
 
 const MADE_HERE: readonly Sample[] = ['torus', 'sphere', 'figure', 'organ', 'ring', 'flag', 'layers'];
 export const SAMPLES: readonly Sample[] = HAS_HORSE ? ['horse', ...MADE_HERE] : MADE_HERE;
-/** What the list of models calls them. */
+/** Their names in the list of models. */
 export const SAMPLE_NAMES: Readonly<Record<Sample, string>> = {
     horse: 'Horse', torus: 'Torus', sphere: 'Sphere', figure: 'Dancer and skirt', organ: 'Organ and probe', ring: 'Ring and kerchief', flag: 'Flag', layers: 'Ten layers',
 };

@@ -9,7 +9,7 @@ const FRAMES_UNDER_WAY = 2;
 
 type Frame = FromWorker & { kind: 'frame' };
 
-/** What is wrong with a cloth, as far as it is known. */
+/** The faults of a cloth, as far as they have been counted. */
 export interface Counts {
     /** Of a closed model. */
     inside?: number;

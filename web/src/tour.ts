@@ -86,7 +86,7 @@ export class Tour {
     #stop = -1;
     #timer = 0;
     #since = 0;
-    /** What the visitor had chosen. */
+    /** The visitor's choice before the tour. */
     #before: Settings['map'] = 'exact';
 
     constructor(wishes: TourWishes) {

@@ -1,6 +1,6 @@
-"""Arguments as the library takes them.
+"""Conversion of arguments to the types of the library.
 
-Wrong types are TypeErrors and wrong values ValueErrors, whose sentences name the argument.
+Wrong types raise a TypeError and wrong values a ValueError, whose message names the argument.
 """
 
 from __future__ import annotations
@@ -44,12 +44,12 @@ def whole(name: str, value: Any, least: int = 0, most: int = _MOST_WHOLE) -> int
 
 
 def index(name: str, value: Any) -> int:
-    """Of what is counted from 0; whether there is so much, the library knows."""
+    """Checks an index; the library checks that it is in range."""
     return whole(name, value, -(2**63), 2**63 - 1)
 
 
 def threads_of(value: Any) -> int:
-    """0 stands for all cores."""
+    """Checks a number of threads; 0 means all cores."""
     return whole("threads", value, 0, _MOST_THREADS)
 
 
@@ -103,7 +103,7 @@ def list_of_kind(name: str, values: Any, kind: type[Kind]) -> list[Kind]:
 
 
 def path_of(value: Any) -> str:
-    """Of a file or folder, as the library takes it."""
+    """Converts the path of a file or folder."""
     if not isinstance(value, (str, bytes, os.PathLike)):
         raise TypeError(f"a path must be a str or os.PathLike, not {kind_name(value)}")
     path = os.fsdecode(value)
@@ -113,7 +113,7 @@ def path_of(value: Any) -> str:
 
 
 def json_of(values: Mapping[str, Any]) -> str:
-    """Values as JSON for the library, which has no NaN, no infinity and no objects: these are refused by their keys."""
+    """Converts values to JSON; NaN, infinity and other objects are refused by errors that name their keys."""
     return json.dumps(_plain("", values))
 
 

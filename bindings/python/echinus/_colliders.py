@@ -1,4 +1,4 @@
-"""Models among which deformables move, and how they move."""
+"""Models among which deformables move, and the motions of these models."""
 
 from __future__ import annotations
 
@@ -79,25 +79,25 @@ class ColliderState:
 
 
 class ContactPoints(NamedTuple):
-    """The contacts that pushed in a frame: of the deformables with models and with themselves.
+    """The contacts of a frame, of the deformables with models and with themselves.
 
     Attributes
     ----------
     positions
-        [contact, 3] on the deformable, when it pushed last in the frame; world coordinates.
+        [contact, 3] The last position of the contact in the frame, on the deformable; world coordinates.
     normals
-        [contact, 3] unit, towards the deformable; towards its first part where both are its own.
+        [contact, 3] Unit normals towards the deformable, or towards its first part if both parts are its own.
     gaps
-        [contact] when it pushed last; positive.
+        [contact] The last gap in the frame; positive.
     normal_impulses
-        [contact] on the deformable (its first part) along the normal in the frame, N s.
+        [contact] The impulse on the deformable (its first part) along the normal in the frame, N s.
     friction_impulses
-        [contact, 3] the same across the normal, N s.
+        [contact, 3] The impulse of friction, perpendicular to the normal, N s.
     colliders
-        [contact] -1 where the contact is of the deformables with themselves.
+        [contact] The index of the collider; -1 for a contact of the deformables with themselves.
     particles
-        [contact, 4] of the first part, and then of the second one if it is the deformables' own, too: a vertex and the
-        three of a face, or two and two of edges. -1 where there are fewer.
+        [contact, 4] The particles of the first part, and then those of the second if it belongs to the deformables, too:
+        a vertex and the three of a face, or two and two of edges; -1 for unused entries.
     """
 
     positions: NDArray[np.float64]

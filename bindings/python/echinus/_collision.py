@@ -15,9 +15,9 @@ from echinus._colliders import Collider
 class ParticleCollision:
     """Keeps the particles of any solver out of models.
 
-    After each step of the solver, :meth:`correct` moves particles that entered or crossed a model back out. With
-    exact maps a particle that begins a step outside ends it outside, however fast it or the models move. Several
-    threads may call; they compute one at a time.
+    After each step of the solver, :meth:`correct` moves particles that entered or crossed a model back out.
+    With exact maps a particle that begins a step outside ends it outside, however fast it or the models move.
+    Several threads may call its methods, but only one computes at a time.
 
     Parameters
     ----------
@@ -121,8 +121,8 @@ class ParticleCollision:
 class SurfaceCollision:
     """Keeps the faces that join the particles of any solver off models and off each other.
 
-    After :meth:`correct` no face intersects a model or another face, within the limits of docs/limits.md. Several
-    threads may call; they compute one at a time.
+    After :meth:`correct` no face intersects a model or another face, within the limits of docs/limits.md.
+    Several threads may call its methods, but only one computes at a time.
 
     Parameters
     ----------

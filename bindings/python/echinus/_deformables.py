@@ -212,8 +212,8 @@ def combine(parts: Sequence[Deformable]) -> Deformable:
 def with_masses_times(factor: float, deformable: Deformable) -> Deformable:
     """Multiplies all masses of a deformable by a finite, positive factor.
 
-    A cloth's particles have the mean mass 1, so *mass of the cloth / number of its particles* brings it to the unit of
-    that mass.
+    A cloth's particles have the mean mass 1, so multiplying by *mass of the cloth / number of its particles*
+    converts them to the unit of that mass.
     """
     core = of_kind("deformable", deformable, Deformable)._deformable
     return Deformable._of(_core.with_masses_times(number("factor", factor), core))

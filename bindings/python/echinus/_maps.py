@@ -17,7 +17,7 @@ CoreMap = TypeVar("CoreMap", _core.ExactMap, _core.DistanceMap)
 
 
 class _Answers:
-    """One answer to each point, in a structured array. The properties are views of its fields."""
+    """One answer for each point, in a structured array. The properties are views of its fields."""
 
     def __init__(self, array: NDArray[np.void], origin: tuple[float, float, float] = (0.0, 0.0, 0.0)) -> None:
         self.array = array
@@ -96,7 +96,7 @@ class Contacts(_Answers):
 class SweepHits(_Answers):
     """The first crossing of each segment with the surface.
 
-    A segment that meets nothing has fraction 1, normal 0, face -1, and its end as ``point``.
+    A segment without a crossing has fraction 1, normal 0, face -1, and its end as ``point``.
 
     Attributes
     ----------
@@ -131,7 +131,7 @@ class SweepHits(_Answers):
 
     @property
     def found(self) -> NDArray[np.bool_]:
-        """(...) Is anything met?"""
+        """(...) Is there a crossing?"""
         found: NDArray[np.bool_] = self.face >= 0
         return found
 
@@ -145,12 +145,11 @@ class ExactMapStatistics:
     dropped_faces
         Faces without area on the map's lattice; they count for distances only.
     longest_list, mean_list
-        Faces of a band: the most, and the mean.
+        Number of faces in a band: the largest, and the mean.
     expected_tests
-        Faces that ``contains`` looks at for a point on the surface; about 10 for most meshes.
+        Expected number of faces that ``contains`` tests for a point on the surface; about 10 for most meshes.
     certain_share
-        Share of the bounding sphere's volume where the map knows the answer beforehand; 1 for a
-        closed mesh.
+        Share of the bounding sphere's volume where the map stores the answer; 1 for a closed mesh.
     uncertain_directions
         Share of the directions from the centre along which an answer is computed somewhere.
     """
@@ -171,9 +170,9 @@ class DistanceMapStatistics:
     Attributes
     ----------
     max_entries
-        The most crossings of one direction.
+        The largest number of crossings along one direction.
     corrected_entries, clamped_entries
-        Entries that the correction moved, and those of them that it could not move as far as it should.
+        Entries that the correction moved, and those of them whose correction was cut short.
     wrong_parity_share
         Share of directions that see a hole; 0 for a closed mesh.
     """
@@ -194,7 +193,7 @@ class _Map(Generic[CoreMap]):
     def contains(
         self, points: ArrayLike, *, threads: int = 1, out: NDArray[np.bool_] | None = None
     ) -> NDArray[np.bool_]:
-        """Which points are inside?
+        """Decides which points are inside.
 
         Parameters
         ----------
@@ -221,11 +220,11 @@ class _Map(Generic[CoreMap]):
         points : array_like (..., 3)
             NaN and infinity have no contact.
         margin
-            Points outside get a contact too where the surface is at most this far; ``inf`` for all of them.
+            Points outside also get a contact if the surface is at most this far away; ``inf`` gives one to all points.
         threads
             0: all cores. The answers do not depend on it.
         out : Contacts, optional
-            Takes the answers, in the place of earlier ones to as many points.
+            Earlier answers for the same number of points, which are overwritten.
         """
         taken = None if out is None else of_kind("out", out, Contacts).array
         return Contacts(self._built.contacts(points, number("margin", margin), taken, threads_of(threads)), self._built.origin)
@@ -242,9 +241,9 @@ class _Map(Generic[CoreMap]):
 
     @property
     def origin(self) -> tuple[float, float, float]:
-        """The origin of the float32 frame of the map: (0, 0, 0), unless its mesh is so far from there that float32
-        could not hold it. Points that are asked, and places in answers, are in the frame of the mesh all the same:
-        give them as float64."""
+        """The origin of the map's float32 frame: (0, 0, 0), unless its mesh is so far from there that
+        float32 could not represent it. Points in queries and answers are nevertheless in the frame of the
+        mesh: pass them as float64."""
         return self._built.origin
 
     @property
@@ -282,7 +281,7 @@ class _Map(Generic[CoreMap]):
 
 
 class ExactMap(_Map[_core.ExactMap]):
-    """The map whose answers are exact on its lattice, 1.9e-6 of the bounding radius wide.
+    """The map whose answers are exact on its lattice, whose step is 1.9e-6 of the bounding radius.
 
     Parameters
     ----------
@@ -351,8 +350,8 @@ class ExactMap(_Map[_core.ExactMap]):
     ) -> Any:
         """Signed distances from the surface, **negative inside and positive outside**, however far away.
 
-        The sign is that of :meth:`contains`, also of a distance of 0: it is then -0 inside. For an open mesh
-        :attr:`Contacts.certain` tells where it is certain. Where parts overlap, the nearest face may lie
+        The sign is that of :meth:`contains`, even if the distance is 0: it is then -0 inside. For an open
+        mesh :attr:`Contacts.certain` tells where it is certain. Where parts overlap, the nearest face may lie
         inside the solid.
 
         Parameters
@@ -360,7 +359,7 @@ class ExactMap(_Map[_core.ExactMap]):
         points : array_like (..., 3)
             NaN has the distance NaN, and infinity is infinitely far.
         gradient
-            Also give the unit vectors along which the distances grow fastest; 0 for points that are not
+            Also return the unit vectors along which the distances grow fastest; 0 for points that are not
             finite.
         threads
             0: all cores. The answers do not depend on it.
@@ -385,15 +384,15 @@ class ExactMap(_Map[_core.ExactMap]):
     ) -> NDArray[np.float32]:
         """Winding numbers: the signed number of times that the surface surrounds each point.
 
-        A whole number where the surface is closed, else the generalised winding number (Jacobson et al. 2013),
-        whose distance from a half says how much holes and gaps matter.
+        They are integers for a closed surface, and otherwise generalised winding numbers (Jacobson et al.
+        2013), whose distance from one half shows how much holes and gaps matter.
 
         Parameters
         ----------
         points : array_like (..., 3)
             NaN has the winding number NaN, and infinity has 0.
         tolerance
-            The numbers may be off by this much, but not to the other side of a half; 0 counts as 1e-8.
+            The largest error, which does not cross a half; 0 counts as 1e-8.
         threads
             0: all cores. The answers do not depend on it.
         out : ndarray (...) of float32, optional
@@ -426,7 +425,7 @@ class ExactMap(_Map[_core.ExactMap]):
 
 
 class DistanceMap(_Map[_core.DistanceMap]):
-    """The paper's map: distances along rays from a centre, interpolated. Small and fast, and not exact.
+    """The paper's map, which interpolates distances along rays from a centre. It is small and fast, but not exact.
 
     Parameters
     ----------

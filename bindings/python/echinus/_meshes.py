@@ -1,4 +1,4 @@
-"""Meshes: files, reports, repair, generators, and the judges by brute force."""
+"""Meshes: files, reports, repair, generators, and references by brute force."""
 
 from __future__ import annotations
 
@@ -34,8 +34,8 @@ class Mesh:
     Parameters
     ----------
     vertices : array_like (n, 3)
-        Positions, rounded to float32 where that can hold the shape. Of a mesh far from 0, such as a building in
-        the coordinates of a country, it cannot, and float64 is kept.
+        Positions, rounded to float32 if that can represent the shape. For a mesh far from 0, such as a
+        building in geographic coordinates, it cannot, so they stay float64.
     faces : array_like (m, 3)
         Whole numbers: the vertices of each triangle, counter-clockwise seen from outside.
 
@@ -93,8 +93,8 @@ def arrays_of(mesh: MeshLike) -> tuple[NDArray[np.float32] | NDArray[np.float64]
 def read_mesh(path: Path) -> Mesh:
     """Reads OBJ, PLY, STL, OFF, glTF, GLB or 3DS, as the file name's extension says.
 
-    All meshes of the file are joined, polygons are cut into triangles, equal positions become one vertex and
-    vertices that no face uses are dropped. Nothing is repaired.
+    All meshes of the file are joined, polygons are triangulated, equal positions are welded and vertices that
+    no face uses are dropped. Nothing is repaired.
 
     Raises
     ------
@@ -130,20 +130,20 @@ class MeshReport:
     Attributes
     ----------
     closed
-        Along every edge as many faces run one way as the other. Corners of edges where they do not count as one
-        within 2^-21 of the radius, as they do for maps.
+        Every edge is balanced: the same number of faces traverse it in either direction. Vertices of
+        unbalanced edges count as one if they are at most 2^-21 of the radius apart, as they do for maps.
     manifold
         Every edge has at most two faces, and the faces at each vertex form one fan.
     orientable
-        Faces can be turned so that neighbours agree about the outside; those of a Moebius strip cannot.
+        Faces can be flipped so that neighbours agree about the outside; those of a Moebius strip cannot.
     signed_volume
-        Positive where faces look outwards.
+        Positive if faces point outwards.
     centre, radius
         The smallest sphere that encloses all vertices used by faces.
     rounding_step
-        The step of float32 at the largest coordinate, where all coordinates are float32 numbers and half of this
-        step exceeds a step of a map's lattice; otherwise 0. If they were rounded before they came here, the shape
-        is off by up to half the step.
+        The spacing of float32 at the largest coordinate, if all coordinates are float32 numbers and half of
+        this spacing exceeds a step of a map's lattice; otherwise 0. If the coordinates were rounded before,
+        the error of the shape is up to half the spacing.
     """
 
     face_count: int
@@ -190,19 +190,19 @@ class RepairReport:
     Attributes
     ----------
     holes_left
-        Those with more edges, and rims of sheets; 0 unless holes were to be closed.
+        Larger holes, and rims of sheets; 0 unless holes were to be closed.
     sheets_thickened
         Pieces of surface between rims.
     faces_added
         To fill seams, to close holes and to thicken sheets.
     vertices_welded
-        In whose place faces refer to others now.
+        Vertices that were replaced by others in all faces.
     slivers_dropped
-        Loose ones, and faces that lost their area by welding.
+        Loose slivers, and faces that lost their area by welding.
     faces_turned
-        So that neighbours agree.
+        Faces flipped so that neighbours agree.
     seams_filled
-        Holes without width.
+        Filled holes of zero width.
     """
 
     duplicate_faces_dropped: tuple[int, ...]
@@ -248,15 +248,15 @@ def repair(
 ) -> tuple[Mesh, RepairReport]:
     """A copy with the repairs that need no guess, and a report of them. A closed mesh stays closed.
 
-    The last three arguments make open surfaces and assemblies solid, on request: they guess what was meant. The
-    order is: seams that are welded, duplicate faces, doubled patches, slivers, orientation, seams that are filled,
-    holes, what is inside out, inner faces, sheets.
+    On request, ``close_holes``, ``drop_inner_faces`` and ``sheet_thickness`` make open surfaces and
+    assemblies solid by guessing. The order is: welding of seams, duplicate faces, doubled patches, slivers,
+    orientation, filling of seams, holes, inside-out parts, inner faces, sheets.
 
     Parameters
     ----------
     mesh
-        Vertices are distinguished by index: :func:`weld` first, or close seams, where equal positions mean the
-        same vertex.
+        Vertices are distinguished by index: call :func:`weld` first, or close seams, if equal positions mean
+        the same vertex.
     drop_duplicate_faces
         Among faces with the same three vertices, drop opposite ones in pairs, and keep the first of the rest.
     drop_doubled_patches
@@ -296,8 +296,8 @@ def repair(
 def winding_number(mesh: MeshLike, points: ArrayLike, *, threads: int = 1) -> NDArray[np.float64]:
     """Generalised winding numbers: 1 inside a closed mesh with outward faces, 0 outside.
 
-    By brute force over all faces, in double precision: a judge for maps, not a query. NaN for a point that is
-    not finite.
+    The function visits all faces, in double precision: it is a reference for maps, not a query. The result is
+    NaN for a point that is not finite.
 
     Parameters
     ----------
@@ -315,7 +315,7 @@ def winding_number(mesh: MeshLike, points: ArrayLike, *, threads: int = 1) -> ND
 def unsigned_distance(mesh: MeshLike, points: ArrayLike, *, threads: int = 1) -> NDArray[np.float64]:
     """Distances to the nearest point of the surface, by brute force in double precision: a reference for maps.
 
-    Infinite for a point that is not finite. Parameters and shapes as for :func:`winding_number`.
+    They are infinite for points that are not finite. Parameters and shapes are those of :func:`winding_number`.
     """
     return _core.unsigned_distance(*arrays_of(mesh), points, threads_of(threads))
 

@@ -28,7 +28,7 @@ _Model = MeshLike | AnyMap | None
 
 @dataclass(frozen=True)
 class SimulationOptions:
-    """The options of a simulation that are in force; :class:`Simulation` describes them."""
+    """The options in use by a simulation; :class:`Simulation` describes them."""
 
     time_step: float
     solver: Literal["newton", "jakobsen"]
@@ -69,19 +69,19 @@ class SimulationProfile:
     Attributes
     ----------
     integration_seconds, constraint_seconds, collision_seconds
-        Where the time went.
+        The times that these parts took.
     query_count, contact_count, map_query_count
-        Queries of particles, those of them that were pushed, and those that needed the map.
+        Numbers of queries of particles, of contacts found, and of queries that needed the map.
     rescued_count
-        Times that a particle was put back because it would have passed through an exact map.
+        Number of times that a particle was moved back because it would have passed through an exact map.
     lost_count
-        Times that a particle ended a frame inside an exact map or on its other side.
+        Number of times that a particle ended a frame inside an exact map or on the other side of its surface.
     truncated_count
-        With surface collision: times that a particle was stopped before a face met something.
+        With surface collision: number of times that the displacement of a particle was cut short to avoid a contact.
     measured_pair_count
-        The work of surface collision.
+        With surface collision: number of pairs whose distance was measured.
     squeezed_count
-        Pairs of parts of faces for which no room was proven, summed over all steps. Only then faces may intersect.
+        Unresolved pairs of elements, summed over all steps: no free space was proven. If 0, no faces intersect.
     """
 
     integration_seconds: float
@@ -98,16 +98,17 @@ class SimulationProfile:
 
 
 class Simulation:
-    """A deformable that moves among colliders; :meth:`from_scene` makes one of a scene.
+    """A deformable that moves among colliders; :meth:`from_scene` makes one from a scene.
 
-    The same input gives the same positions, bit for bit. Several threads may call; one at a time computes.
+    The same input gives the same positions, bit for bit. Several threads may call its methods, but only one
+    computes at a time.
 
     Parameters
     ----------
     deformable
         Copied.
     colliders
-        Any number, each with its own place and motion.
+        Any number of colliders, each with its own pose and motion.
     frame_limit
         Of :meth:`run`.
     time_step
@@ -260,16 +261,16 @@ class Simulation:
         allow_open_colliders: bool = False,
         threads: int = 0,
     ) -> Simulation:
-        """The beginning of a scene.
+        """Makes the simulation of a scene, at its start.
 
         Parameters
         ----------
         scene
             The path of a JSON file, or its content; docs/scenes.md documents every key.
         model
-            A mesh, which the scene may repair, or a map in place of the scene's model. For a scene with several
-            colliders a list with one for each, None where the scene's own is meant. A collider with a vertex cache
-            takes a mesh only.
+            A mesh, which the scene may repair, or a map in place of the scene's model. For a scene with
+            several colliders this is a list with one for each; None selects the scene's own. A collider with
+            a vertex cache takes a mesh only.
         cloth, rest_cloth
             Meshes in place of the files of the scene's cloth.
         model_folders
@@ -325,7 +326,7 @@ class Simulation:
         return simulation
 
     def step(self, frame_count: int = 1) -> None:
-        """Computes frames. Ctrl-C ends it between two of them.
+        """Computes frames. Ctrl-C ends the call between two frames.
 
         Raises
         ------
@@ -494,9 +495,9 @@ class Simulation:
         return Load(*self._simulation.load_on(index("collider", collider)))
 
     def set_collider_free(self, collider: int, mass: float) -> None:
-        """The next frames move a model freely from its present velocities, as a rigid body of uniform density.
+        """Lets a model move freely from its present velocities, as a rigid body of uniform density.
 
-        Gravity and contact with the deformables move it. Needs an exact map of a closed mesh and the solver ``newton``.
+        Gravity and the deformables move it. This needs an exact map of a closed mesh and the solver ``newton``.
 
         Raises
         ------
@@ -506,15 +507,15 @@ class Simulation:
         self._simulation.set_collider_free(index("collider", collider), number("mass", mass))
 
     def record_contacts(self, is_on: bool = True) -> None:
-        """Sets whether the following frames record the contacts that push; off by default. It is not part of
-        a state."""
+        """Sets whether the following frames record their contacts; off by default. It is not part of
+        a saved state."""
         self._simulation.record_contacts(flag("is_on", is_on))
 
     def contact_points(self) -> ContactPoints:
         """The contacts that were recorded in the last frame, as arrays that are copies.
 
-        Their impulses divided by the time step sum to the opposite of :meth:`load_on` of each model, except for the loads of attached
-        particles and of truncated ones. None under ``jakobsen``.
+        Their impulses divided by the time step sum to the opposite of :meth:`load_on` of each model, except for the
+        loads of attached particles and of truncated ones. ``jakobsen`` records none.
         """
         return ContactPoints(*self._simulation.contact_points())
 

@@ -32,7 +32,7 @@ class TetrahedralMesh:
     Notes
     -----
     Contiguous arrays of these types are shared, not copied: do not change them while the mesh is in use. A
-    mesh may have any fault; :func:`require_valid_tetrahedra` tells.
+    mesh may have any fault; :func:`require_valid_tetrahedra` reports the first.
     """
 
     vertices: NDArray[np.float32] | NDArray[np.float64]

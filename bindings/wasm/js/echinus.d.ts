@@ -5,7 +5,7 @@
  *
  * Frames, units and terms are those of the C++ library (docs/conventions.md). All failures throw an EchinusError. An
  * object with a delete() holds memory of the module: delete it (or declare it with `using`) when it is no longer
- * needed. Otherwise garbage collection frees it, which may be late.
+ * needed. Otherwise the garbage collector frees it, possibly late.
  *
  * Nothing here is asynchronous except load(): in a page, run long work in a worker. An instance belongs to the thread
  * that loaded it.
@@ -42,8 +42,9 @@ export function missingFeatures(): string[];
 /**
  * Loads the module. Each call makes an instance with its own memory; a compiled module loads again quickly and can be
  * posted to workers.
- * @param source  where echinus.wasm is, by default beside this module: what fetch() takes, so that a relative address is
- *                relative to the page or the worker; in Node also the path of a file. Or its bytes, or the module compiled
+ * @param source  the address of echinus.wasm, as for fetch(): a relative one is relative to the page or the worker; in
+ *                Node also the path of a file. Or its bytes, or the compiled module. By default it is next to this
+ *                module
  * @throws Unsupported, or Unreadable when it is not there
  */
 export function load(source?: URL | string | Response | Promise<Response> | BufferSource | WebAssembly.Module): Promise<Echinus>;
@@ -205,13 +206,13 @@ export class Mesh extends Deletable {
     intersectingPairs(other: Mesh): Uint32Array;
     /** Pairs of faces of this mesh that intersect other than in shared vertices and edges, ascending. @returns [2 pair_count] */
     selfIntersectingPairs(): Uint32Array;
-    /** By brute force over all faces, as a reference: 1 inside a closed mesh, 0 outside. */
+    /** A reference by brute force over all faces: 1 inside a closed mesh, 0 outside. */
     windingNumber(point: Vec3): number;
     unsignedDistance(point: Vec3): number;
 }
 
 export type Repair = 'duplicate_faces' | 'doubled_patches' | 'inside_out' | 'seams' | 'slivers' | 'orientation';
-/** Repairs that only a scene may ask for. */
+/** Repairs that only a scene can request. */
 export type MakeSolid = 'small_holes' | 'inner_faces' | 'sheets';
 
 export interface Fault {
@@ -252,7 +253,7 @@ export interface RepairReport {
     duplicateFacesDropped: number;
     doubledPatchFacesDropped: number;
     componentsFlipped: number;
-    /** Only a scene may ask for these; 0 otherwise. */
+    /** Only a scene can request these; otherwise 0. */
     holesClosed: number;
     holesLeft: number;
     innerFacesDropped: number;
@@ -338,11 +339,11 @@ declare abstract class MapOfEitherKind extends Deletable {
     readonly radius: number;
 
     contains(point: Vec3): boolean;
-    /** @param margin  points outside also get a contact when the surface is at most this far */
+    /** @param margin  points outside also get a contact if the surface is at most this far away */
     contact(point: Vec3, margin?: number): Contact;
     /**
-     * contains() for many points. Copies nothing when the points are a PointBuffer; a Float32Array is copied first.
-     * @param count  how many of the points, from the first on; by default all
+     * contains() for many points. A PointBuffer is not copied; a Float32Array is copied first.
+     * @param count  the number of points to query, from the first on; by default all
      * @returns `inside`
      */
     containsBatch(points: PointBuffer | Float32Array, inside: FlagBuffer, count?: number): FlagBuffer;
@@ -379,7 +380,7 @@ export class ExactMap extends MapOfEitherKind {
 export class DistanceMap extends MapOfEitherKind {
     readonly kind: 'distance';
     readonly description: DistanceMapDescription;
-    /** How many of the samples around a point enter the interpolation; 0 where queries do not interpolate. */
+    /** The number of samples around a point that enter the interpolation; 0 where queries do not interpolate. */
     usableSampleCount(point: Vec3): number;
     ray(direction: Vec3): DistanceRay;
     /** The surface of the map; for each face its layer, 0 for the nearest to the centre. Delete the mesh. */
@@ -400,7 +401,7 @@ export interface ExactRay {
     cell: number;
     /** Unit vectors. */
     cellCorners: [number, number, number][];
-    /** Where surface may lie; windingBelow: of the gap towards the centre, null where it is not unique. */
+    /** The intervals that may contain surface; windingBelow is the winding number of the gap towards the centre, null if it is not unique. */
     bands: { from: number; to: number; faceCount: number; windingBelow: number | null }[];
     /** Distances of the surface. */
     crossings: number[];
@@ -543,7 +544,7 @@ export interface SceneDescription {
     map?: MapOptions;
     collider?: Placement;
     colliders?: readonly (Placement & { model: string | Shape; repair?: readonly (Repair | MakeSolid)[] })[];
-    /** Needed without `bodies`. */
+    /** Required without `bodies`. */
     cloth?: (Sheet | MeshCloth) & {
         density?: number;
         position?: Vec3;
@@ -576,7 +577,7 @@ export interface SceneDescription {
         deformable?: boolean;
     }[];
     material?: {
-        /** Without a cloth, in place of its own. */
+        /** Without a cloth, these replace the cloth's own. */
         thickness?: number;
         self_thickness?: number;
         // Options: jakobsen. By bindings/generate_options from bindings/options.toml: edit that.
@@ -702,7 +703,7 @@ export interface Placement {
     scale?: number | Vec3;
     linear_velocity?: Vec3;
     angular_velocity?: Vec3;
-    /** kg: it moves freely from its velocities. */
+    /** With a mass, in kg, the model moves freely from its velocities. */
     mass?: number;
     /** In place of position, rotation, velocities and mass. */
     keyframes?: readonly Keyframe[];
@@ -721,7 +722,7 @@ export interface Handle {
     release?: number;
 }
 
-/** A soft body; lengths of `element` before the scale. */
+/** A soft body. `element` is a length before scaling. */
 export interface Body {
     mesh: string | Shape;
     element: number;
@@ -806,11 +807,12 @@ export class Scene extends Deletable {
     /**
      * The scene's cloth, bodies and colliders, ready to step. The map may be of another kind than the scene's.
      * @param maps     of the collider, or of each of `colliders`, in their order
-     * @param options  allowOpenCollider: accept the exact map of an open mesh, near whose gaps particles get in and out;
-     *                 cloth, clothAtRest: the meshes of clothFile and clothRestFile, welded;
-     *                 bodies: for each body its closed surface, which is filled with tetrahedra; null for a generated shape
-     * @throws InvalidOptions for the exact map of an open mesh otherwise, for more or fewer maps than colliders, where a
-     * mesh is not given, and with surface_collision for a start that intersects; InvalidMesh for a mesh that is no cloth
+     * @param options  allowOpenCollider: accept the exact map of an open mesh, near whose gaps particles get in and
+     *                 out; cloth, clothAtRest: the meshes of clothFile and clothRestFile, welded; bodies: for each body
+     *                 its closed surface, which is filled with tetrahedra; null for a generated shape
+     * @throws InvalidOptions for the exact map of an open mesh otherwise, for more or fewer maps than colliders, where
+     * a mesh is not given, and with surface_collision for a start that intersects; InvalidMesh for a mesh that is no
+     * cloth
      */
     makeSimulation(
         maps: AnyMap | readonly AnyMap[],
@@ -851,21 +853,21 @@ export class Simulation extends Deletable {
      * A simulation of the same particles and colliders in their present state, with the solver, material, thickness and
      * gravity of another scene: for options that change while the cloth falls. Profile and frame restart. Delete the
      * old one.
-     * @param maps  of all of the scene's colliders: those that this simulation does not have yet are added where the scene
-     *              has them, and those beyond the scene's are left out. By default the colliders stay
+     * @param maps  of all of the scene's colliders: those that this simulation does not have yet are added where the
+     *              scene has them, and those beyond the scene's are left out. By default the colliders stay
      * @throws InvalidOptions when the scene sets surface_collision and the cloth intersects now; set untangle too
      */
     continueWith(scene: Scene, maps?: AnyMap | readonly AnyMap[]): Simulation;
     /**
-     * Moves a collider, the first by default, freely from its present velocities: a rigid body of uniform density, moved
-     * by gravity and by contact with the cloth. Needs an exact map of a closed mesh and the solver `newton`.
+     * Moves a collider, the first by default, freely from its present velocities: a rigid body of uniform density,
+     * moved by gravity and by contact with the cloth. Needs an exact map of a closed mesh and the solver `newton`.
      * @param mass  kg, 1e-9 to 1e15
      * @throws InvalidOptions; then nothing has changed
      */
     setColliderFree(mass: number, index?: number): void;
     /** The load that the cloth exerted on a collider in the last frame by contact and friction, averaged over the frame: N, N m. */
     loadOn(index?: number): { readonly force: Vec3; readonly torque: Vec3 };
-    /** Sets whether the following frames record the contacts that push; off by default. */
+    /** Sets whether the following frames record their contacts; off by default. */
     recordContacts(isOn?: boolean): void;
     /** The contacts that were recorded in the last frame; copies. */
     readonly contactPoints: ContactPoints;
@@ -879,8 +881,8 @@ export class Simulation extends Deletable {
      * deformed. The exact map is rebuilt, which takes about a microsecond per face.
      * @param vertices  [3 vertexCount] in the collider's frame, in the order of the mesh from which its
      *                  map was built; copied, unless they are a PointBuffer
-     * @throws InvalidOptions for another number of vertices, one that is not finite, a collider without an exact map, or
-     * a scene without surface_collision; InvalidMesh where no map is possible. Then nothing has changed
+     * @throws InvalidOptions for another number of vertices, one that is not finite, a collider without an exact map,
+     * or a scene without surface_collision; InvalidMesh where no map is possible. Then nothing has changed
      */
     setColliderVertices(vertices: PointBuffer | Float32Array, index?: number): void;
 
@@ -894,33 +896,34 @@ export class Simulation extends Deletable {
     /**
      * Wind for one frame; call before each step.
      * @param wind  velocity of the air, units per second
-     * @param rate  how quickly the cloth takes on the wind's velocity across its faces, per second: 1 to 10 for cloth
+     * @param rate  the rate at which the cloth takes on the wind's velocity across its faces, per second: 1 to 10 for
+     *              cloth
      */
     blow(wind: Vec3, rate: number): void;
 
-    /** Which particles are inside the first collider now, by its map. */
+    /** The particles that are inside the first collider now, by its map. */
     containsBatch(inside: FlagBuffer): FlagBuffer;
     /** In world units, for instance for colours by depth. */
     contactsBatch(margin: number, contacts: ContactBuffer): ContactBuffer;
 }
 
-/** The contacts that pushed in a frame: of the cloth with colliders and with itself. */
+/** The contacts of a frame, of the cloth with colliders and with itself. */
 export interface ContactPoints {
-    /** [3 count] on the cloth, when it pushed last in the frame; world coordinates. */
+    /** [3 count] the last position of the contact in the frame, on the cloth; world coordinates. */
     readonly positions: Float64Array;
-    /** [3 count] unit, towards the cloth; towards its first part where both are its own. */
+    /** [3 count] unit normals towards the cloth, or towards its first part if both parts are its own. */
     readonly normals: Float64Array;
-    /** [count] when it pushed last. */
+    /** [count] the last gap in the frame. */
     readonly gaps: Float64Array;
-    /** [count] on the cloth (its first part) along the normal in the frame, N s. */
+    /** [count] the impulse on the cloth (its first part) along the normal in the frame, N s. */
     readonly normalImpulses: Float64Array;
-    /** [3 count] the same across the normal, N s. */
+    /** [3 count] the impulse of friction, perpendicular to the normal, N s. */
     readonly frictionImpulses: Float64Array;
-    /** [count] -1 where the contact is of the cloth with itself. */
+    /** [count] the index of the collider; -1 for a contact of the cloth with itself. */
     readonly colliders: Int32Array;
     /**
-     * [4 count] of the first part, and then of the second one if it is the cloth's own, too: a vertex and the three of a
-     * face, or two and two of edges. -1 where there are fewer.
+     * [4 count] the particles of the first part, and then those of the second if it belongs to the cloth, too: a vertex
+     * and the three of a face, or two and two of edges; -1 for unused entries.
      */
     readonly particles: Int32Array;
 }
@@ -935,7 +938,7 @@ export interface SimulationProfile {
     mapQueryCount: number;
     /** Number of times that a particle was moved back to a free position at the end of a frame. */
     rescuedCount: number;
-    /** Number of times that a particle that was free before ended a frame inside an exact map or beyond its surface: 0. */
+    /** Number of times that a particle that was free before ended a frame inside an exact map or beyond its surface. */
     lostCount: number;
     /** With surface_collision: number of times that the displacement of a particle was truncated. */
     truncatedCount: number;

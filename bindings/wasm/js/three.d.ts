@@ -1,12 +1,12 @@
-/** Geometries of three.js: as meshes for maps, and of a cloth. docs/wasm.md. */
+/** Converts geometries of three.js to meshes, and makes the geometry of a cloth: docs/wasm.md. */
 import type { BufferGeometry, Matrix4 } from 'three';
 import type { Echinus, Mesh, Simulation } from 'echinus';
 
 /**
- * The triangles of a geometry, indexed or not, with any kind of position attribute. Vertices at the same
- * place are joined, to a millionth of the largest coordinate, before `matrix` moves them, so the order of vertices is another one. drawRange, groups,
- * morph targets and skins are not regarded. Delete it.
- * @param matrix  applied to the vertices, for instance object.matrixWorld; one that mirrors turns the faces round
+ * The triangles of a geometry, indexed or not, with any kind of position attribute. Vertices at the same position, to a
+ * millionth of the largest coordinate, are joined before `matrix` is applied, so the order of vertices changes.
+ * drawRange, groups, morph targets and skins are ignored. Delete the mesh.
+ * @param matrix  applied to the vertices, for instance object.matrixWorld; one that mirrors reverses the faces
  * @throws InvalidMesh as makeMesh()
  */
 export function meshOfGeometry(echinus: Echinus, geometry: BufferGeometry, matrix?: Matrix4 | null): Mesh;
@@ -14,11 +14,11 @@ export function meshOfGeometry(echinus: Echinus, geometry: BufferGeometry, matri
 /** A copy of a mesh, with smooth normals. */
 export function geometryOfMesh(mesh: Mesh): BufferGeometry;
 
-/** The cloth of a simulation: call update() after stepping. Deleting the simulation is the caller's. */
+/** The cloth of a simulation: call update() after stepping. The caller deletes the simulation. */
 export class ClothGeometry extends BufferGeometry {
     constructor(simulation: Simulation);
-    /** Positions, normals and bounding sphere as the simulation has the particles now. */
+    /** Updates positions, normals and bounding sphere from the simulation. */
     update(): void;
-    /** A plain geometry as this one is now; it does not follow the simulation. */
+    /** A copy as a plain geometry, which does not follow the simulation. */
     clone(): this;
 }

@@ -114,7 +114,7 @@ def call(run, options):
 
 
 def write_recording(run, options):
-    """What `echinus render` and echinus-check read, besides the runner's cloth.pc2."""
+    """Writes the files that `echinus render` and echinus-check read, besides the runner's cloth.pc2."""
     folder = options.work / run.folder
     shutil.copy(options.work / run.model / f"cloth_{run.side}.obj", folder / "cloth.obj")
     shutil.copy(options.work / run.model / "model.obj", folder / "collider.obj")
@@ -276,7 +276,7 @@ def main():
         if run.runner.name in missing or (options.resume and keys in records):
             continue
         start = time.monotonic()
-        # What was too slow with fewer particles is so with more.
+        # An engine that was too slow with fewer particles is too slow with more.
         status = call(run, options) if run.side <= slow else f"stopped after {options.patience} s"
         if status == "missing":
             missing.add(run.runner.name)

@@ -32,7 +32,7 @@ class Runner:
     setups: tuple = ("recommended", "matched")
 
     def missing(self):
-        """What is not there, in words; the runner itself finds out about the rest (exit status 77)."""
+        """Describes missing dependencies; the runner itself detects the rest (exit status 77)."""
         for word in self.command:
             if word.startswith(("build/", FOLDER)) and not (ROOT / word).exists():
                 return f"{word} is not there"

@@ -19,7 +19,7 @@ using namespace echinus::comparison;
 
 namespace {
 
-/// What is asked of a particle.
+/// The kind of query.
 enum class Asked { Side, Contact, Distance };
 
 constexpr std::array kAsked{Asked::Side, Asked::Contact, Asked::Distance};

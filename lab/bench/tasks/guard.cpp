@@ -94,7 +94,7 @@ void add_build_ratios(const Subject& horse, const Setting& setting, Records& rec
 
 // ---- Verdict
 
-/// What got slower or faster, a sentence each, by what it is about: a system at a task.
+/// A sentence for each subject, a system at a task, that became slower or faster.
 struct Verdict {
     std::map<std::string, std::string> slower, faster;
     std::vector<std::string> unknown; ///< not in the record, or in it alone

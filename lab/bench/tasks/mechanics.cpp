@@ -159,7 +159,7 @@ void add_pendulums(const Setting& setting, Table& table) {
 
 // ---- Energy and momentum ----
 
-/// What the published state has, in double.
+/// Computes energy and momentum of the published state in double precision.
 class Judge {
   public:
     explicit Judge(const Simulation& simulation)

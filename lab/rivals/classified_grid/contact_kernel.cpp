@@ -36,10 +36,10 @@ struct Seeker {
     Vec3f point;          ///< carried along: neighbours in space lie anywhere in memory
 };
 
-/// What a group's faces are asked for, in lattice steps from the list's middle. A face's plane has the unit
-/// normal n; edge k starts at v, runs along t for a length, and m = n x t leads from it to the inside. Then
-/// the squared distance of a place in the plane from the edge is (m . q)^2 + w^2, where q is counted from v
-/// and w is how far t . q lies beyond the edge's ends.
+/// The numbers that a group stores for each face, in lattice steps from the list's middle. A face's plane has
+/// the unit normal n; edge k starts at v, runs along t for a length, and m = n x t leads from it to the
+/// inside. Then the squared distance of a place in the plane from the edge is (m . q)^2 + w^2, where q is
+/// counted from v and w is how far t . q lies beyond the edge's ends.
 enum FaceNumber : std::size_t {
     kNormal,    ///< x, y, z, and -n . v
     kEdges = 4, ///< for each edge m and -m . v, t and -t . v, the length
@@ -95,7 +95,7 @@ constexpr std::size_t kLanes = 16; ///< at most
 /// In lattice steps: the diameter of the lattice and more.
 constexpr double kEverything = 4 * static_cast<double>(kLatticeExtent);
 
-/// What float may be wrong by, in lattice steps, and more.
+/// An upper bound of the rounding error of float, in lattice steps.
 constexpr float kRounding = 2;
 
 class ContactKernel {

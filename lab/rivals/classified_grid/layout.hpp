@@ -12,7 +12,7 @@
 #include <span>
 #include <vector>
 
-/// What a classified grid stores, and where a particle finds its cell.
+/// The arrays of a classified grid, and the search for a particle's cell.
 namespace echinus::rivals {
 
 using CellPlace = Vec3<std::int32_t>; ///< a cell by its column, row and layer
@@ -85,8 +85,9 @@ struct Indices {
 
 /// Where the cells lie. Cell (i, j, k) holds the lattice points from origin + cell_steps (i, j, k) on.
 struct GridFrame {
-    /// What a lookup may be off by: rounded floats find a cell within 0.4 steps, snapping moves a particle by
-    /// 0.5, and the perturbation by less than any step. Faces are listed as if cells were wider by this.
+    /// The largest error of a lookup: rounded floats find a cell within 0.4 steps, snapping moves a particle
+    /// by 0.5, and the perturbation by less than any step. Faces are listed as if cells were wider by this
+    /// number.
     static constexpr std::int32_t kSlack = 2;
 
     LatticeFrame lattice;

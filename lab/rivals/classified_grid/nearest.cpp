@@ -159,7 +159,7 @@ std::optional<NearestPlace> nearest_place(const GridArrays& grid, const Vec3d& p
                                       y <= done_high.y && z >= done_low.z && z <= done_high.z;
                     if (!done && search.is_stored({x, y, z})) search.look_through({x, y, z}, reach, visit);
                 }
-        // What lies beyond the box is farther away than what it extends around the place.
+        // Faces beyond the box are farther away than its extent around the place.
         const bool everything =
             low == CellPlace{} && high == CellPlace{counts[0] - 1, counts[1] - 1, counts[2] - 1};
         if (everything || reach() <= covered) break;

@@ -23,7 +23,7 @@ NearestPlace nearest_on_face(const GridArrays& grid, std::uint32_t face, const V
 /// through in shells around the place until no nearer face can follow.
 std::optional<NearestPlace> nearest_place(const GridArrays& grid, const Vec3d& place, double farthest);
 
-/// What a query answers for a particle whose nearest point is known.
+/// The contact of a particle whose nearest point is known.
 Contact contact_at(const GridArrays& grid, const Vec3f& point_local, bool inside,
                    const NearestPlace& nearest);
 
@@ -33,7 +33,7 @@ Contact contact(const GridArrays& grid, const Vec3f& point_local, bool inside, f
 /// Is the snapped particle inside? Decided with exact integers.
 bool is_inside(const GridArrays& grid, const Vec3f& point_local);
 
-/// What a face adds to the winding number on the way between two lattice points, exactly.
+/// The exact change of the winding number by a face along the segment between two lattice points.
 int crossing_between(const GridArrays& grid, std::uint32_t face, const LatticePoint& from,
                      const LatticePoint& to);
 

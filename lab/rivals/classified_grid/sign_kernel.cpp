@@ -34,7 +34,7 @@ struct alignas(16) PlaceInCell {
     std::uint32_t first_reference; ///< of the cell's list
 };
 
-/// What else is needed of it.
+/// The rest of a particle's data.
 struct alignas(16) CellOfParticle {
     std::int32_t x, y, z;       ///< the cell's centre
     std::uint32_t particle = 0; ///< number in the chunk | winding number of the centre << 16

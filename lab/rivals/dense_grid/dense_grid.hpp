@@ -88,8 +88,8 @@ class DenseGrid final : public System {
     /// distance and gradient are 0, which is outside.
     Sample sample(const Vec3f& point) const noexcept;
 
-    /// What contacts_batch() answers, an array a component: the normal is that of the field, found for every
-    /// particle in the box, as a loop without branches does. Depth is positive inside.
+    /// The answers of contacts_batch(), with an array for each component. The normal is that of the field; a
+    /// loop without branches computes it for every particle in the box. Depth is positive inside.
     struct Contacts {
         std::span<float> depths, normals_x, normals_y, normals_z; ///< [n] each
     };

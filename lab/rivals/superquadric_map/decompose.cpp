@@ -210,10 +210,10 @@ constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
 // HACD works in a box whose diagonal is twice this.
 constexpr double kScale = 1000;
 
-// What perimeter^2 / (4 pi area) of a segment counts against its concavity, which HACD measures in its box.
-// Of its own 0.1 and of 1, 3 and 10, this gave the fewest wrong answers on a horse in 17 segments and a torus
-// in 12 together. Concavity measured across thin parts as well (extra points) was as good, and takes time
-// with the square of the number of faces.
+// The weight of perimeter^2 / (4 pi area) of a segment relative to its concavity, which HACD measures in its
+// box. Compared with HACD's own 0.1 and with 3 and 10, this value gave the fewest wrong answers for a horse
+// in 17 segments and a torus in 12 together. Concavity measured across thin parts as well (extra points) was
+// as good, and takes time with the square of the number of faces.
 constexpr double kCompactness = 1;
 
 /// HACD reports to a plain function, so what it is to call waits here.
@@ -319,8 +319,8 @@ void spread(const TriangleMesh& mesh, std::vector<std::uint32_t>& segments) {
             segments[neighbour] = segments[reached[i]];
             reached.push_back(neighbour);
         }
-    // What is left has no edge, being a line or a point, or borders on nothing but the like: anywhere is
-    // right.
+    // The remaining faces have no edge, since they are lines or points, or border only on such faces: any
+    // segment is right for them.
     std::ranges::replace(segments, kNone, segments[reached.front()]);
 }
 

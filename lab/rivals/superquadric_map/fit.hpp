@@ -47,8 +47,8 @@ struct SuperquadricFit {
 
 /// The superquadric nearest to points of a surface, in the sense of least squares.
 ///
-/// What is minimised is the sum of squares of the radial distances |p| (1 - F^(-e1/2)) of Gross and Boult
-/// (ICCV 1988), because it is a length and the very quantity that a superquadric map stores. The error
+/// The fit minimises the sum of squares of the radial distances |p| (1 - F^(-e1/2)) of Gross and Boult (ICCV
+/// 1988), because such a distance is a length and the quantity that a superquadric map stores. The error
 /// sqrt(a1 a2 a3) (F^e1 - 1) of Solina and Bajcsy ("Recovery of parametric models from range images", IEEE
 /// PAMI 12(2), 1990) is not: its factor is there to keep fits to one side of a solid small, while here all
 /// sides are seen. (Radial distances times that factor were tried: where nothing fits well, the least is a

@@ -14,7 +14,7 @@
 
 namespace echinus::rivals {
 
-/// What a query needs of a segment besides its grid.
+/// The data of a segment that a query needs besides its grid.
 struct SegmentFrame {
     Vec3f axes[3];                              ///< of the superquadric, in the mesh's frame
     Vec3f centre;                               ///< local
@@ -150,7 +150,7 @@ struct SampleCell {
     }
 };
 
-/// What a segment says of a particle.
+/// The answer of a segment for a particle.
 struct SegmentAnswer {
     bool is_known = false; ///< false beyond the reach and on rays without a crossing
     float depth = 0;       ///< along the ray, negative outside

@@ -19,25 +19,21 @@
 /// convex segments, each gets a superquadric around it, and on each superquadric a grid of samples tells how
 /// far below it the surface lies. A particle is in the solid when it is in one of the segments.
 ///
-/// What is as the papers say: decomposition into segments; superquadrics of sizes, exponents and pose; one
-/// distance a sample, that "of the point closer to the bounding surface" (Vogiannou et al., conclusion); a
-/// grid uniform in (eta, omega), periodic in omega, of 200 x 200 samples; inside-outside function first, map
-/// second. What they leave open:
-///   - segments come from HACD (decompose.hpp), where SQ-Map goes by visual salience and curvature;
-///   - a segment's convex hull closes it where it borders on others (segments.hpp): a ray ends at the
-///     segment's outermost face or, where it meets none, at the hull. Caps over the border, tried first, left
-///     gaps between segments: 10 times as many wrong answers in the bounding sphere of a torus and of a
-///     horse;
-///   - the superquadric is the one nearest to the hull (fit.hpp), whose centre then lies within, enlarged
-///     about that centre until it holds the segment;
-///   - distances are radial, along rays from the superquadric's centre, and rays are cast by exact integers,
-///     as for the other maps; samples lie half a step off the poles, uniform in the angles of the formula:
-///     exponents below 1 draw them towards edges and corners, and at 0.3 a box has a quarter of a side's
-///     length between the two samples next to its middle;
-///   - a ray that misses the hull too, as it may where that is flat, leaves its sample empty. A particle
-///     whose nearest sample is empty is not in the segment; other empty samples do not enter the
-///     interpolation;
-///   - of several segments, the one that the particle is deepest in answers.
+/// The following is as in the papers: decomposition into segments; superquadrics with sizes, exponents and
+/// pose; one distance per sample, that "of the point closer to the bounding surface" (Vogiannou et al.,
+/// conclusion); a grid of 200 x 200 samples, uniform in (eta, omega) and periodic in omega; inside-outside
+/// function first, map second. The papers leave the following open: - segments come from HACD
+/// (decompose.hpp), where SQ-Map goes by visual salience and curvature; - a segment's convex hull closes it
+/// where it borders on others (segments.hpp): a ray ends at the segment's outermost face or, where it meets
+/// none, at the hull. Caps over the border, tried first, left gaps between segments: 10 times as many wrong
+/// answers in the bounding sphere of a torus and of a horse; - the superquadric is the one nearest to the
+/// hull (fit.hpp), whose centre then lies within, enlarged about that centre until it holds the segment; -
+/// distances are radial, along rays from the superquadric's centre, and rays are cast by exact integers, as
+/// for the other maps; samples lie half a step off the poles, uniform in the angles of the formula: exponents
+/// below 1 draw them towards edges and corners, and at 0.3 a box has a quarter of a side's length between the
+/// two samples next to its middle; - a ray that misses the hull too, as it may where that is flat, leaves its
+/// sample empty. A particle whose nearest sample is empty is not in the segment; other empty samples do not
+/// enter the interpolation; - of several segments, the one that the particle is deepest in answers.
 ///
 /// Wrong by sampling, by one distance a ray (all from the centre to the outermost face counts as solid), and
 /// where a hull leaves the solid. Depth is radial: at least the distance to the segment's surface, often

@@ -8,7 +8,7 @@
 
 namespace echinus::test {
 
-/// What no system can be built around must be refused by each, with a sentence that says why.
+/// Every system must refuse meshes around which none can be built, with a sentence that gives the reason.
 template <typename Build>
 void expect_bad_meshes_are_refused(const Build& build) {
     const auto refuses = [&](const TriangleMesh& mesh, const char* words) {

@@ -1,4 +1,4 @@
-// What holds for every system behind the common interface.
+// Properties of every system behind the common interface.
 
 #include "bad_meshes.hpp"
 #include "rivals/maps/maps.hpp"

@@ -78,11 +78,11 @@ std::vector<VertexLayer> layers_of_vertices(const LatticeMesh& lattice, const Sp
 // distance values S1 and S2 are augmented by the error difference between the interpolated value and the
 // distance of the vertex."
 //
-// What it leaves open, and our reading:
+// The paper leaves the following open; this is our interpretation:
 // - Which layer is the vertex's? It has as many crossings before it as the vertex has on its own ray. The
 // layer nearest to the vertex may be another one: that of the other side of a thin part.
-// - A vertex on a silhouette has faces that rays leave through and faces that they enter through, hence no
-// layer of its own.
+// - A vertex on a silhouette has faces through which rays leave and faces through which they enter, hence no
+//   layer of its own.
 // - Vertices whose ray is crossed more or less often than one of the samples around it are left alone: that
 // is the paper's second error situation, which the query treats.
 // - Several vertices in one cell: each sample moves by the largest amount that any of them requires.

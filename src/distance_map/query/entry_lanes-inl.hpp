@@ -34,11 +34,11 @@ class EntryLanes {
         return is_wide_ ? load_rows_at(WideRows{wide_}, positions)
                         : load_rows_at(NarrowRows{narrow_}, positions);
     }
-    /// What a row holds, in the mesh's unit.
+    /// The distances that a row holds, in the mesh's unit.
     HWY_INLINE FloatLanes entry_of(FloatLanes loaded) const {
         return is_wide_ ? loaded : hn::Mul(hn::ConvertTo(kFloat, hn::BitCast(kInt, loaded)), splat(step_));
     }
-    /// What is at each lane's position, in the mesh's unit.
+    /// The distance at each lane's position, in the mesh's unit.
     HWY_INLINE FloatLanes gather(IntLanes positions) const {
         return is_wide_ ? hn::GatherIndex(kFloat, wide_, positions) : gather_narrow(positions);
     }

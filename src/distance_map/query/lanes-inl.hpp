@@ -1,6 +1,6 @@
-// What the kernels of this folder do to a vector of particles at once. Compiled once for each instruction
-// set. Each step has the bits of its scalar counterpart: the same operations in the same order, no fused
-// multiply-add.
+// The steps that the kernels of this folder apply to a vector of particles. They are compiled once for each
+// instruction set. Each step gives the same bits as its scalar counterpart: it makes the same operations in
+// the same order, without fused multiply-add.
 
 #include "directions/bilinear_grid.hpp"
 

@@ -57,7 +57,7 @@ struct Bands {
     Arena<CellVolume> volumes;         ///< [cell_count] of an open surface; none of a closed one
 };
 
-/// What a map spends on bands, outer limits included.
+/// The size of a map's bands, including the outer limits.
 std::size_t byte_count(const Bands& bands);
 
 /// Faces of the band that the average reference belongs to: those that a query near the surface meets.

@@ -13,8 +13,8 @@
 
 namespace echinus {
 
-/// What several threads have counted together, and whether it exceeds what is allowed. The final verdict does
-/// not depend on which thread counted what.
+/// A count that several threads share, with a limit. Whether it finally exceeds the limit does not depend on
+/// which thread counted which items.
 class LimitedCount {
   public:
     explicit LimitedCount(std::size_t most) : most_(most) {}

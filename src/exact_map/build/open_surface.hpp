@@ -27,8 +27,9 @@ std::vector<BorderEdge> find_border(const LatticeMesh& lattice);
 std::vector<Triangle> cap_border(std::span<const BorderEdge> border,
                                  std::span<const Vec3<std::int32_t>> vertices);
 
-// What an open surface's generalised winding number needs of a tree of triangles (Barill, Dickson, Schmidt,
-// Levin and Jacobson, "Fast Winding Numbers for Soups and Clouds", 2018), with bounds of what is left out.
+// The data of a tree of triangles for the generalised winding number of an open surface (Barill, Dickson,
+// Schmidt, Levin and Jacobson, "Fast Winding Numbers for Soups and Clouds", 2018), with bounds of the
+// neglected terms.
 //
 // The winding number around a place p is the sum over the faces of 1 / 4 pi times the integral of n (x - p)
 // / |x - p|^3. Seen from a distance r = |c - p| greater than the radius R of a group of faces around c, it
@@ -59,8 +60,9 @@ struct OwnedWindingTree {
     void show_in(ExactMapView& map) const;
 };
 
-/// What a map's queries sum for the winding number of an open surface: caps of its border where they are far
-/// fewer than its faces, or far shorter, else the faces. Time O(n log n) of the caps, O(n) of the faces.
+/// Makes the tree of triangles over which queries of an open surface sum: caps of its border if they are far
+/// fewer or far shorter than its faces, otherwise the faces. The time is O(n log n) for caps and O(n) for
+/// faces.
 /// @param map  its nodes, corners, vertices and border are set
 OwnedWindingTree make_winding_tree(const ExactMapView& map);
 

@@ -123,7 +123,7 @@ void split_at_longest_side(std::span<TreeItem> items, std::size_t left_count) {
     if (overlap_high < overlap_low) return; // they lie as they should
     const KeyAlong key(axis);
     if (overlap_high - overlap_low > side(axis) / 4) return select(items, left_count, key);
-    // What lies to the left of all of the right stays there, and likewise on the other side.
+    // Items to the left of all items of the right half stay there, and likewise on the other side.
     const std::size_t left_sure = partition_below(left, packed<32>(overlap_low, 0), key);
     const std::size_t right_unsure = partition_below(right, packed<32>(overlap_high + 1, 0), key);
     select(items.subspan(left_sure, left_count - left_sure + right_unsure), left_count - left_sure, key);

@@ -109,7 +109,7 @@ class NearMeasure {
         return fused_dot(gap, gap);
     }
 
-    /// What is farther may be left out by within().
+    /// Sets the distance beyond which within() may leave out boxes.
     void set_reach(float limit) {
         const float reach = std::sqrt(limit);
         const auto set = [&](float above, float below, float unit, std::int32_t& low, std::int32_t& high) {
@@ -582,7 +582,7 @@ class OnePlaceSearch {
     std::array<std::uint32_t, kCapacity> firsts_;
     alignas(32) std::array<std::array<float, kWidth>, kCapacity> lowers_;
 
-    // What is waiting. As many nodes as in walk_near_leaves().
+    // The nodes that remain to be visited, at most as many as in walk_near_leaves().
     static constexpr std::size_t kMaxDepth = 12;
     std::size_t node_count_ = 0;
     std::array<std::uint32_t, kMaxDepth * kWidth + kWidth> nodes_;

@@ -13,7 +13,7 @@
 /// bounds (build/open_surface.hpp), the triangles nearby one by one.
 namespace echinus {
 
-/// What a winding number is wanted for.
+/// The purpose of a winding number, which determines the required accuracy.
 struct WindingGoal {
     /// The values at which an answer turns.
     enum class Turn : std::uint8_t {

@@ -2,7 +2,7 @@ import { byId } from './elements';
 
 /** How long a remark stays. */
 const REMARK_MS = 4000;
-/** What is done sooner shows no progress. */
+/** Tasks that take less time show no progress. */
 const PATIENCE_MS = 300;
 
 /** One sentence about an error, shown until it is closed or the visitor tries something else. */
@@ -28,7 +28,7 @@ export function remark(sentence: string): void {
 }
 
 let appearing = 0;
-/** What is being done, with a button to cancel it; undefined: it is done. */
+/** Shows the present task with a button to cancel it; undefined: it is done. */
 export function showProgress(what: string | undefined, cancel: () => void = () => {}): void {
     const progress = byId('progress');
     if (what === undefined) {

@@ -23,7 +23,7 @@ export function showFrame({ number, inside, intersecting_pairs, self_intersectin
     byId('figure-frame').textContent = count(number);
 }
 
-/** What a recording does not count has no figure. */
+/** A figure that a recording does not count is not shown. */
 function showCount(id: string, number: number | undefined): void {
     writeCount(id, number);
     byId(id).parentElement!.hidden = number === undefined;

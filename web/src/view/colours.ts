@@ -7,7 +7,7 @@ export const HEM = 0xe8cba6;
 /** From the first piece of a cloth of several to the last. */
 export const TINTS = [0x2f6f8f, 0xe0c9a0, 0xb4584e];
 export const FLESH = 0xb2574c;
-/** What a visitor moves: the ball. */
+/** The ball, which the visitor moves. */
 export const TOOL = 0x5c7f92;
 export const INK = 0x3a3936;
 /** Lines on the backdrop when that is dark. */
@@ -19,7 +19,7 @@ export const SCALE = [0xfff7bc, 0xfec44f, 0xfb9a29, 0xcc4c02, 0x662506];
 /** Where a map searches for surface along a ray. */
 export const BAND = 0x2f6f8f;
 
-/** What is wrong with a cloth: unlike everything that lies around it. */
+/** The faults of a cloth, in a colour unlike all others in the picture. */
 export const WRONG = 0x16c5f5;
 
 /** The faults of a mesh, by kind: vivid, since they must be seen. */

@@ -117,7 +117,7 @@ const COMPOSE = `
             }
         float open = weights > 1e-3 ? sum / weights : 1.0;
         vec4 seen = texture2D(picture, place);
-        // What light there is in a corner comes off warm surfaces.
+        // The light in a corner comes from warm surfaces.
         gl_FragColor = vec4(seen.rgb * mix(vec3(0.16, 0.12, 0.11), vec3(1.0), open), 1.0);
         #include <colorspace_fragment>
     }`;

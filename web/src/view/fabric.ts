@@ -2,7 +2,7 @@ import * as THREE from 'three';
 import { HEM, SCALE, TINTS, WRONG } from './colours';
 import { matte } from './material';
 
-/** What the materials of both sides and of the edge of a cloth share. */
+/** The common properties of the materials of a cloth's two sides and its edge. */
 export class FabricUniforms {
     /** 1 for colours by depth, otherwise 0. */
     readonly byDepth = { value: 0 };

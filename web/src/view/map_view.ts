@@ -29,7 +29,7 @@ export class MapView {
         this.forget();
     }
 
-    /** What was shown is of another map. */
+    /** Clears the view, which belongs to another map. */
     forget(): void {
         clear(this.#cells);
         for (const part of [this.#surface, this.#cut, this.#ray]) clear(part);

@@ -59,7 +59,7 @@ const NEAREST = 1.25;
 /** How long the camera must be still to count as arrived. */
 const ARRIVAL_MS = 250;
 
-/** What is in sight, and the ground under it. */
+/** The visible sphere, and the ground below it. */
 interface Sight {
     centre: Triple;
     radius: number;
@@ -79,7 +79,7 @@ export class Stage {
     #shading: ContactShading | undefined;
     #wish?: Settings['look'];
     #fine = false;
-    /** What shows each half of the picture its own; one, where there are no halves. */
+    /** The functions that select the objects of each half of the picture; one if there are no halves. */
     #halves: (() => void)[] = [() => {}];
     /** The look has changed. */
     onLook = (_fine: boolean) => {};

@@ -5,7 +5,7 @@ import { type Settings, collisionOf } from '../settings';
 import type { Act } from './acts/act';
 import { ballOf } from './ball';
 
-/** What a scene is measured by. */
+/** The dimensions of a model, to which a scene is scaled. */
 export interface Body {
     centre: readonly number[];
     radius: number;
@@ -20,7 +20,7 @@ export interface Body {
 export const columnsOf = (particles: number): number => Math.max(2, Math.round(Math.sqrt(particles)));
 
 /**
- * What happens on the model. Gravity scales with its radius, so the cloth falls equally fast on a model in millimetres and on one in metres.
+ * Makes the scene around the model. Gravity scales with its radius, so the cloth falls equally fast on a model in millimetres and on one in metres.
  * @param falls  the cloth has begun to fall, by other settings
  */
 export function sceneFor(settings: Settings, body: Body, act: Act, { falls } = { falls: false }): SceneDescription {

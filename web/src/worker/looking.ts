@@ -33,7 +33,7 @@ export function cellsOf({ map }: Playground): CellNews | undefined {
     return { faces: colouredFaces(onSphere(corners, map.centre, map.radius), faceCounts, scaleTo(largest)), largest };
 }
 
-/** What goes to the page without a copy. */
+/** The buffers that are transferred to the page without a copy. */
 export const buffersOf = ({ positions, normals, colours }: ColouredFaces): Transferable[] => [positions.buffer, normals.buffer, colours.buffer];
 
 function withLists(map: ExactMap) {

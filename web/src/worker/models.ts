@@ -140,5 +140,5 @@ function weldTriangles(echinus: Echinus, root: Object3D): Mesh {
 
 const isMesh = (object: Object3D): object is import('three').Mesh => 'isMesh' in object;
 
-/** What happens around a sample; nothing here: a sheet falls on it. */
+/** The acts of samples; on a sample without one a sheet falls. */
 const ACTS: { readonly [S in Sample]?: () => Act } = { figure, flag, layers, organ, ring };

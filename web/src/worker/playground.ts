@@ -30,7 +30,7 @@ const FASTEST = 12;
 /** The number of the ball among the colliders, after the model and the ground. */
 const BALL = 2;
 
-/** What a frame is, for the page. */
+/** A frame, as the page receives it. */
 export interface Look {
     arrays: FrameArrays;
     figures: Figures;
@@ -411,7 +411,7 @@ export class Playground {
     }
 }
 
-/** What is done with a scene, which is deleted if that is refused. */
+/** Uses a scene, and deletes it if that fails. */
 function unlessRefused<T>(scene: Scene, act: () => T): T {
     try {
         return act();
@@ -454,7 +454,7 @@ function longestEdgeAt(particle: number, faces: Uint32Array, positions: Float32A
     return longest;
 }
 
-/** What the page needs of it. */
+/** The part of a garment that the page needs. */
 const onFabric = ({ weave, tints, hem }: Garment): Partial<ClothNews> => ({ weave, ...(tints && { tints }), ...(hem && { hem }) });
 
 /** Places on a square sheet, in radii of the model. */

@@ -31,14 +31,14 @@
 #include <utility>
 #include <vector>
 
-/// Bullet's soft bodies among exact maps, without a change of Bullet (docs/bullet.md): a MapShape in place of
-/// a mesh shape, and a Solver in place of Bullet's own.
+/// Lets Bullet's soft bodies collide with exact maps, without a change of Bullet (docs/bullet.md): a MapShape
+/// replaces a mesh shape, and a Solver replaces Bullet's own.
 ///
-/// Header-only, written against Bullet 3.24. Bullet may be built with floats, or with doubles for large
+/// This is a header-only library for Bullet 3.24. Bullet may be built with floats, or with doubles for large
 /// worlds: then positions are rounded to float only in the frame of each shape.
 namespace echinus::bullet {
 
-// ---- Numbers of Bullet's
+// ---- Bullet's numbers
 
 inline Vec3d to_echinus(const btVector3& v) {
     return {double{v.x()}, double{v.y()}, double{v.z()}};
@@ -58,7 +58,7 @@ inline bool is_finite(const btTransform& pose) {
     return is_finite(translation) && std::isfinite(rotation.w + rotation.x + rotation.y + rotation.z);
 }
 
-/// Bullet itself stops bodies whose boxes reach about so far.
+/// Bullet itself stops bodies whose boxes extend to about this distance.
 constexpr btScalar kLargestMargin = 1e5;
 
 /// @throws Error InvalidOptions unless the margin is from 0 to kLargestMargin
@@ -80,14 +80,14 @@ struct Box {
     btVector3 low{SIMD_INFINITY, SIMD_INFINITY, SIMD_INFINITY};
     btVector3 high{-SIMD_INFINITY, -SIMD_INFINITY, -SIMD_INFINITY};
 
-    /// Leaves NaN out.
+    /// Ignores NaN.
     void add(const btVector3& point) {
         for (int i = 0; i < 3; ++i) {
             low[i] = btMin(point[i], low[i]);
             high[i] = btMax(point[i], high[i]);
         }
     }
-    /// The box around this one in the frame of a pose. The origin is subtracted first: then floats lose
+    /// The box around this one in the frame of a pose. The origin is subtracted first, so that floats lose
     /// nothing far from 0.
     Box seen_from(const btTransform& pose) const {
         const btVector3 from = low - pose.getOrigin(), to = high - pose.getOrigin();
@@ -95,19 +95,19 @@ struct Box {
         const btVector3 reach = (to - from) / 2 * pose.getBasis().absolute();
         return {centre - reach, centre + reach};
     }
-    /// NaN in a box meets everything.
+    /// A box with NaN intersects every box.
     bool meets(const Box& other) const { return TestAabbAgainstAabb2(low, high, other.low, other.high); }
 };
 
-/// A closed surface as a shape of Bullet's, for static, kinematic and dynamic objects, and in compounds. Soft
-/// bodies meet it in a world with a Solver. Any number of objects may share it.
+/// A closed surface as a Bullet shape, for static, kinematic and dynamic objects and as a child of compounds.
+/// Soft bodies collide with it in a world with a Solver. Any number of objects may share it.
 ///
-/// Margin: added to that of the soft body; 0 unless set. Where a soft body meets the shape in a world without
-/// a Solver, the step throws Error InvalidOptions.
+/// The margin, 0 unless set, is added to that of the soft body. If a soft body meets the shape in a world
+/// without a Solver, the step throws Error InvalidOptions.
 class MapShape : public btConcaveShape {
   public:
-    /// @param for_rigid_bodies  what rigid bodies and rays meet instead, such as a btBvhTriangleMeshShape of
-    ///                          the same mesh; has to outlive this shape. Null: they meet nothing
+    /// @param for_rigid_bodies the shape with which rigid bodies and rays collide instead, such as a
+    /// btBvhTriangleMeshShape of the same mesh; it must outlive this shape. Null: they collide with nothing
     /// @throws Error InvalidMesh for the map of an open surface, and for one with an origin
     explicit MapShape(ExactMap map, const btConcaveShape* for_rigid_bodies = nullptr)
         : collider_{.map = std::move(map)}, for_rigid_bodies_(for_rigid_bodies) {
@@ -118,8 +118,8 @@ class MapShape : public btConcaveShape {
             throw Error(ErrorCode::InvalidMesh,
                         "the mesh stands too far from 0 for a shape; move its vertices "
                         "to 0, and the object to where they were");
-        // A type for foreign meshes that Bullet itself gives to no shape. CUSTOM_CONCAVE_SHAPE_TYPE is also
-        // that of btSdfCollisionShape, to which Bullet casts without a question.
+        // This type is meant for foreign meshes, and no shape of Bullet has it. CUSTOM_CONCAVE_SHAPE_TYPE is
+        // also the type of btSdfCollisionShape, to which Bullet casts unchecked.
         m_shapeType = FAST_CONCAVE_MESH_PROXYTYPE;
     }
 
@@ -129,12 +129,12 @@ class MapShape : public btConcaveShape {
         placed.pose = to_echinus(pose);
         return placed;
     }
-    /// The radius of a ball around all of the scaled surface.
+    /// The radius of a ball that contains the scaled surface.
     btScalar radius() const {
         return btScalar(map().view().radius) * scale_.absolute()[scale_.absolute().maxAxis()];
     }
 
-    /// Around the scaled surface with some room for rounding, in the frame of the shape.
+    /// A box around the scaled surface, with a margin for rounding, in the frame of the shape.
     Box local_box() const {
         const btVector3 centre = to_bullet(map().view().centre) * scale_;
         const btVector3 reach = btVector3(1, 1, 1) * radius() * btScalar(1.001);
@@ -159,8 +159,8 @@ class MapShape : public btConcaveShape {
         check_margin(margin, "a MapShape");
         btConcaveShape::setMargin(margin);
     }
-    /// Of soft bodies' collider only: set the scale of the shape for rigid bodies, too. Negative numbers
-    /// mirror. @throws Error InvalidOptions for 0 or a number that is not finite
+    /// Affects only the collider of soft bodies: set the scale of the shape for rigid bodies, too. Negative
+    /// numbers mirror. @throws Error InvalidOptions for 0 or a number that is not finite
     void setLocalScaling(const btVector3& scale) override {
         const Vec3d numbers = to_echinus(scale);
         if (!is_finite(numbers) || numbers.x == 0 || numbers.y == 0 || numbers.z == 0)
@@ -169,7 +169,7 @@ class MapShape : public btConcaveShape {
         collider_.scale = numbers;
     }
     const btVector3& getLocalScaling() const override { return scale_; }
-    /// That of a solid ball of the bounding radius; a body may be given a better one.
+    /// Returns the inertia of a solid ball of the bounding radius; you can give a body a better one.
     void calculateLocalInertia(btScalar mass, btVector3& inertia) const override {
         const btScalar moment = btScalar(0.4) * mass * radius() * radius();
         inertia.setValue(moment, moment, moment);
@@ -182,13 +182,13 @@ class MapShape : public btConcaveShape {
     btVector3 scale_{1, 1, 1};
 };
 
-/// Null for another shape, also one of the user's own that has the same type.
+/// Returns null for another shape, including a user's shape of the same type.
 inline const MapShape* as_map_shape(const btCollisionShape& shape) {
     return shape.getShapeType() == FAST_CONCAVE_MESH_PROXYTYPE ? dynamic_cast<const MapShape*>(&shape)
                                                                : nullptr;
 }
 
-/// The contacts of a soft body's nodes with some shapes. Its arrays stay for the next step.
+/// The contacts of a soft body's nodes with some shapes. The arrays are reused in the next step.
 class NodeContacts {
   public:
     void find(std::span<const Collider> colliders, const btSoftBody& body, btScalar margin) {
@@ -212,7 +212,7 @@ class NodeContacts {
     btScalar depth(std::size_t k) const { return btScalar(depths_[k]); }
 
   private:
-    /// In place, whether Bullet has floats or doubles.
+    /// The nodes' positions, read in place, whether Bullet has floats or doubles.
     static StridedSpan<const Vec3<btScalar>> positions_of(const btSoftBody& body) {
         const auto& nodes = body.m_nodes;
         const auto count = static_cast<std::size_t>(nodes.size());
@@ -241,7 +241,7 @@ struct Meeting {
 
     btScalar margin() const { return body->getCollisionShape()->getMargin() + shape->getMargin(); }
     btScalar friction() const { return body->m_cfg.kDF * object->getFriction(); }
-    /// Of the object's material.
+    /// The velocity of the object's material.
     btVector3 velocity_at(const btVector3& point) const {
         const btRigidBody* rigid = btRigidBody::upcast(object);
         if (rigid == nullptr) return {0, 0, 0};
@@ -256,8 +256,8 @@ inline bool wants_contact(const btSoftBody& body, const btCollisionObject& objec
                body.m_collisionDisabledObjects.size();
 }
 
-/// One soft body beside one object with a MapShape, and their contacts. The Solver holds one for each pair
-/// that the broad phase reports.
+/// A soft body near an object with a MapShape, and their contacts. The Solver holds one for each pair that
+/// the broad phase reports.
 class SoftBodyPair {
   public:
     /// Bullet's collision detection has found that the two may touch in this step.
@@ -275,8 +275,8 @@ class SoftBodyPair {
     bool is_of(const btSoftBody& body, const btCollisionObject& object) const {
         return meeting_.body == &body && meeting_.object == &object;
     }
-    /// Whether the two are to have contacts in this step. Those with a link of a multibody need Jacobians
-    /// that its solver keeps to itself.
+    /// Whether the two should have contacts in this step. Contacts with a link of a multibody need Jacobians
+    /// that its solver does not expose.
     bool has_contacts(const btSoftBody& body) const {
         return meeting_.body == &body &&
                meeting_.object->getInternalType() != btCollisionObject::CO_FEATHERSTONE_LINK;
@@ -317,7 +317,7 @@ class SoftBodyPair {
         if (rigid != nullptr) rigid->activate();
     }
 
-    /// The impulse that parts node and body, for each unit of way in one step.
+    /// The impulse that separates node and body, per unit of displacement in one step.
     static btMatrix3x3 impulse_matrix(btScalar inverse_mass, const btRigidBody* rigid, const btVector3& arm,
                                       btScalar seconds) {
         const btScalar sum = inverse_mass + (rigid != nullptr ? rigid->getInvMass() : btScalar(0));
@@ -329,11 +329,11 @@ class SoftBodyPair {
         return mobility.inverse() * (1 / seconds);
     }
 
-    Meeting meeting_;       ///< of null pointers where the two do not meet in this step
+    Meeting meeting_;       ///< null pointers if the two do not meet in this step
     btTransform in_object_; ///< of the shape; not the identity in a compound
 };
 
-/// The boxes of a soft body's nodes where the step began, and where it has ended.
+/// The boxes of a soft body's nodes at the start and at the end of the step.
 struct NodeBoxes {
     Box start, end;
 
@@ -356,11 +356,11 @@ struct PlacedShape {
     btTransform pose, previous_pose; ///< at the end of this step and of the last one
 
     auto key() const { return std::tuple(object_id, number); }
-    /// Bullet goes on with bodies that have exploded.
+    /// Bullet continues with bodies that have exploded.
     bool is_somewhere() const { return is_finite(pose) && is_finite(previous_pose); }
 
-    /// Whether nodes may be inside now or have met the surface during the step: as the moving shape sees it,
-    /// each goes straight from one box to the other.
+    /// Whether nodes may be inside now or have met the surface during the step: in the frame of the moving
+    /// shape each moves straight from one box to the other.
     bool is_near(const NodeBoxes& nodes) const {
         const Box end = nodes.end.seen_from(pose);
         Box way = nodes.start.seen_from(previous_pose);
@@ -370,7 +370,7 @@ struct PlacedShape {
     }
 };
 
-/// The MapShapes in a world, and where they were when the step began.
+/// The MapShapes in a world, with their poses at the start of the step.
 class PlacedShapes {
   public:
     /// At the end of a step.
@@ -427,7 +427,8 @@ class PlacedShapes {
         return is_same ? &*place : nullptr;
     }
 
-    /// Of an object that was not in the world at the end of the last step, as far as its velocity tells.
+    /// The previous pose of an object that was not in the world at the end of the last step, extrapolated
+    /// from its velocity.
     static btTransform previous_pose(const btCollisionObject& object, btScalar seconds) {
         btTransform pose = object.getWorldTransform();
         const btRigidBody* rigid = btRigidBody::upcast(&object);
@@ -464,9 +465,9 @@ class NodeKeeper {
     }
 
   private:
-    static constexpr double kMost = 1e9; ///< that ParticleCollision takes
+    static constexpr double kMost = 1e9; ///< the largest that ParticleCollision accepts
 
-    /// Whether the same shapes are near as in the last step, and begin where they were.
+    /// Whether the same shapes are near as in the last step, and begin at the poses that they had then.
     bool goes_on(std::span<const PlacedShape* const> near) const {
         return collision_ &&
                std::ranges::equal(near, shapes_, [](const PlacedShape* now, const PlacedShape& last) {
@@ -490,8 +491,8 @@ class NodeKeeper {
         collision_.emplace(std::move(colliders), gap(body, near));
     }
 
-    /// How far from the surface a node is put: enough for floats, and not so much that one sees it. Far from
-    /// the origin it is some of the steps between Bullet's numbers there.
+    /// The distance from the surface to which a node is moved: large enough for floats, and too small to be
+    /// visible. Far from the origin it is a few times the spacing of Bullet's numbers there.
     static double gap(const btSoftBody& body, std::span<const PlacedShape* const> near) {
         double gap = double{SIMD_INFINITY}, farthest = 0;
         for (const PlacedShape* shape : near) {
@@ -504,7 +505,7 @@ class NodeKeeper {
         return std::min(kMost,
                         std::max(gap, 4 * double{std::numeric_limits<btScalar>::epsilon()} * farthest));
     }
-    /// Bullet takes any numbers.
+    /// Bullet accepts any numbers.
     static double friction(const btSoftBody& body, const PlacedShape& shape) {
         const double friction{body.m_cfg.kDF * shape.object->getFriction()};
         return friction > 0 ? std::min(friction, kMost) : 0;
@@ -539,28 +540,28 @@ class NodeKeeper {
     std::vector<float> inverse_masses_;
 };
 
-/// Bullet's default solver of soft bodies, which after each step puts nodes that got into a MapShape back to
-/// its surface. Give it to btSoftRigidDynamicsWorld as its last argument:
+/// Bullet's default solver of soft bodies, which after each step also moves nodes that entered a MapShape
+/// back to its surface. Pass it to btSoftRigidDynamicsWorld as the last argument:
 ///
 ///     echinus::bullet::Solver solver(dispatcher);
 ///     btSoftRigidDynamicsWorld world(&dispatcher, &broadphase, &rigid_solver, &configuration, &solver);
 ///
-/// No node ends a step inside, or on the other side of something thin, however fast the two are: each is
-/// swept from where the step began to where it ended, as the collider sees it that was led there from where
-/// it stood at the end of the last step, by Bullet or by setWorldTransform(). Exceptions: nodes that are
-/// pinned or anchored; nodes that several colliders squeeze. In its first step beside soft bodies a collider
-/// came from where its velocity leads back to; one of a kinematic body is wrong in sub-steps. A node that
-/// begins inside is put to the nearest surface point.
+/// No node ends a step inside, or on the other side of a thin part, however fast the node and the collider
+/// are: each node is swept from its position at the start of the step to that at the end, in the frame of the
+/// collider, which Bullet or setWorldTransform() moved since the end of the last step. Exceptions are pinned
+/// and anchored nodes, and nodes that several colliders squeeze. In the first step of a collider near soft
+/// bodies its previous pose is extrapolated from its velocity; for a kinematic body this is wrong in
+/// sub-steps. A node that begins inside is moved to the nearest point of the surface.
 ///
-/// Each step of a world with soft bodies looks once at all objects in its broad phase: about 0.05
-/// microseconds for one without a MapShape, 0.15 for one with.
+/// Each step of a world with soft bodies visits all objects of its broad phase once: about 0.05 microseconds
+/// for an object without a MapShape, 0.15 for one with a MapShape.
 ///
-/// It has to outlive the world, and the dispatcher must not be used without it. As Bullet's soft bodies
-/// themselves it is for one thread: not with btCollisionDispatcherMt, nor in a deformable world
+/// The solver must outlive the world, and the dispatcher must not be used without it. Like Bullet's soft
+/// bodies themselves it supports one thread only: neither btCollisionDispatcherMt nor a deformable world
 /// (btDeformableMultiBodyDynamicsWorld), which has a solver of another kind.
 class Solver : public btDefaultSoftBodySolver {
   public:
-    /// Registers itself for soft bodies beside shapes of MapShape's type.
+    /// Registers itself for pairs of a soft body and a shape of MapShape's type.
     explicit Solver(btCollisionDispatcher& dispatcher) : dispatcher_(dispatcher), create_(*this) {
         dispatcher.registerCollisionCreateFunc(SOFTBODY_SHAPE_PROXYTYPE, FAST_CONCAVE_MESH_PROXYTYPE,
                                                &create_);
@@ -585,7 +586,7 @@ class Solver : public btDefaultSoftBodySolver {
             shapes_.clear();
         else
             shapes_.update(broadphase(), seconds);
-        // A keeper that gets another body notices that nothing goes on.
+        // A keeper that gets another body detects that nothing continues.
         keepers_.resize(static_cast<std::size_t>(m_softBodySet.size()));
         for (int i = 0; i < m_softBodySet.size(); ++i) {
             find_near(*m_softBodySet[i]);
@@ -595,7 +596,7 @@ class Solver : public btDefaultSoftBodySolver {
     }
 
   private:
-    /// The soft body asks all shapes beside it in one call.
+    /// All shapes near the soft body are queried in one call.
     void add_contacts(const btSoftBody& body) {
         beside_.clear();
         placed_.clear();
@@ -615,7 +616,7 @@ class Solver : public btDefaultSoftBodySolver {
         }
     }
 
-    /// Bullet itself sets the boxes of soft bodies in it.
+    /// Bullet itself sets the boxes of soft bodies there.
     btBroadphaseInterface& broadphase() const { return *m_softBodySet[0]->getWorldInfo()->m_broadphase; }
 
     void find_near(btSoftBody& body) {
@@ -633,8 +634,8 @@ class Solver : public btDefaultSoftBodySolver {
         return std::ranges::any_of(pairs_, is_reported) || would_be_reported(body, object);
     }
 
-    /// Bullet looks for pairs at places of its own: a moving object's at the end of the step, or a compound's
-    /// at the beginning. Of those that it overlooked, its filters are asked here.
+    /// Bullet searches for pairs with an object's pose at the end of the step, or with a compound's at the
+    /// beginning. For the pairs that it missed, its filters are called here.
     bool would_be_reported(btSoftBody& body, btCollisionObject& object) {
         btBroadphaseProxy &first = *body.getBroadphaseHandle(), &second = *object.getBroadphaseHandle();
         btOverlappingPairCache& cache = *broadphase().getOverlappingPairCache();
@@ -646,7 +647,7 @@ class Solver : public btDefaultSoftBodySolver {
         return is_reported;
     }
 
-    /// Bullet keeps one for each pair, in memory whose pieces are as large as its own largest algorithm.
+    /// Bullet stores one for each pair, in pieces of memory that are as large as its own largest algorithm.
     class Algorithm : public btCollisionAlgorithm {
       public:
         Algorithm(const btCollisionAlgorithmConstructionInfo& info, Solver& solver)

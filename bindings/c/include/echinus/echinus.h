@@ -31,9 +31,9 @@
 ///
 /// Extensible structs begin with their size. An _init function fills options with the defaults and the size;
 /// for results the caller sets .size before the call. New members will be added at the end with a default of
-/// zero. So a program and a library of different versions are compatible, and a program that sets a member
-/// which the library does not have gets ECHINUS_INVALID_ARGUMENT. Flags are 0 or 1, and reserved members of
-/// options are 0; other values are ECHINUS_INVALID_ARGUMENT.
+/// zero. So a program and a library of different versions are compatible; a call fails with
+/// ECHINUS_INVALID_ARGUMENT if the program sets a member that the library does not have. Flags are 0 or 1,
+/// and reserved members of options are 0; other values are ECHINUS_INVALID_ARGUMENT.
 ///
 /// Frames, units and terms are those of docs/conventions.md: right-handed, lengths in the caller's unit,
 /// angles in radians, faces counter-clockwise seen from outside, rotations as unit quaternions w, x, y, z.
@@ -348,8 +348,8 @@ typedef struct echinus_exact_map_options {
 ECHINUS_API void echinus_exact_map_options_init(echinus_exact_map_options* options, size_t size);
 // End of options.
 
-/// Builds an exact map: inside or outside in integer arithmetic, and the true nearest point of the surface.
-/// The same bytes for any number of threads.
+/// Builds an exact map, which decides inside or outside by integer arithmetic and finds the true nearest
+/// point of the surface. Its bytes do not depend on the number of threads.
 /// @param options  or NULL for the defaults
 /// @return ECHINUS_INVALID_MESH also when the bounding radius lies outside [1e-15, 1e15];
 /// ECHINUS_INVALID_OPTIONS
@@ -357,7 +357,7 @@ ECHINUS_API echinus_status echinus_map_build_exact(const echinus_mesh* mesh,
                                                    const echinus_exact_map_options* options,
                                                    echinus_map** map);
 
-/// How a distance map divides the directions around its centre.
+/// The grid by which a distance map divides the directions around its centre.
 typedef enum echinus_direction_grid {
     ECHINUS_GRID_SPHERICAL = 0,
     ECHINUS_GRID_OCTAHEDRAL = 1,
@@ -365,20 +365,20 @@ typedef enum echinus_direction_grid {
     ECHINUS_GRID_ELLIPSOIDAL = 3
 } echinus_direction_grid;
 
-/// How vertices that linear interpolation between samples misses are corrected for.
+/// The correction for vertices that linear interpolation between samples cuts off.
 typedef enum echinus_vertex_correction {
     ECHINUS_CORRECTION_NONE = 0,
     ECHINUS_CORRECTION_PAPER = 1,
     ECHINUS_CORRECTION_SIGNED = 2
 } echinus_vertex_correction;
 
-/// How one distance is stored.
+/// The format of a stored distance.
 typedef enum echinus_entry_format {
     ECHINUS_ENTRY_FLOAT32 = 0,
     ECHINUS_ENTRY_UNORM16 = 1
 } echinus_entry_format;
 
-/// The axis of the mesh that the poles of a grid lie on.
+/// The axis of the mesh on which the poles of a grid lie.
 typedef enum echinus_pole_axis {
     ECHINUS_POLE_X = 0,
     ECHINUS_POLE_Y = 1,
@@ -416,7 +416,8 @@ typedef struct echinus_distance_map_options {
 ECHINUS_API void echinus_distance_map_options_init(echinus_distance_map_options* options, size_t size);
 // End of options.
 
-/// Builds a distance map: sorted distances along a grid of rays, interpolated; fast, and wrong in places.
+/// Builds a distance map, which interpolates sorted distances along a grid of rays. It is fast, but some of
+/// its answers are wrong.
 /// @param options  or NULL for the defaults
 ECHINUS_API echinus_status echinus_map_build_distance(const echinus_mesh* mesh,
                                                       const echinus_distance_map_options* options,
@@ -647,7 +648,7 @@ typedef struct echinus_triangle_sweep_hit {
 } echinus_triangle_sweep_hit;
 
 /// Sweeps triangles whose corners move along straight lines until they reach the surface. Paths that begin or
-/// end farther from the map's centre than 10^11 of its radii are not followed: they meet nothing.
+/// end farther than 10^11 radii from the map's centre are ignored: they meet nothing.
 /// @param hits  [count] out
 ECHINUS_API echinus_status echinus_map_sweep_triangles(const echinus_map* map, const float* from,
                                                        size_t from_stride, const float* to, size_t to_stride,
@@ -701,8 +702,8 @@ ECHINUS_API echinus_status echinus_collider_contacts(const echinus_collider* col
                                                      echinus_contact* contacts);
 
 /// Finds where moving particles first meet a collider that moves from its previous pose to its present one.
-/// `point` is the present position of the surface point that was met. With distance maps and custom maps
-/// nothing is met.
+/// `point` is the present position of the surface point that was met. Distance maps and custom maps have no
+/// sweep, so no crossing is found.
 ECHINUS_API echinus_status echinus_collider_sweep(const echinus_collider* collider,
                                                   const echinus_pose* previous, const float* from,
                                                   size_t from_stride, const float* to, size_t to_stride,
@@ -1106,7 +1107,7 @@ typedef enum echinus_solver {
     ECHINUS_SOLVER_JAKOBSEN = 1 ///< the paper's solver: distance constraints and collision of particles
 } echinus_solver;
 
-/// In place of a thickness: the library chooses it.
+/// A thickness of this value lets the library choose.
 #define ECHINUS_THICKNESS_CHOSEN (-1.0)
 
 // Options: simulation. By bindings/generate_options from bindings/options.toml: edit that.
@@ -1334,38 +1335,38 @@ ECHINUS_API echinus_status echinus_simulation_set_collider_cache(echinus_simulat
 ECHINUS_API echinus_status echinus_simulation_load_on(const echinus_simulation* simulation, size_t index,
                                                       double* force, double* torque);
 
-/// The next frames move a collider freely from its present velocities: a rigid body of uniform density, moved
-/// by gravity and by contact with the deformable. Needs an exact map of a closed mesh and
-/// ECHINUS_SOLVER_NEWTON.
+/// Lets a collider move freely from its present velocities in the following frames, as a rigid body of
+/// uniform density that gravity and contact with the deformable move. This needs an exact map of a closed
+/// mesh and ECHINUS_SOLVER_NEWTON.
 /// @param mass  kg, finite, 1e-9 to 1e15
 /// @return ECHINUS_INVALID_OPTIONS; then nothing has changed
 ECHINUS_API echinus_status echinus_simulation_set_collider_free(echinus_simulation* simulation, size_t index,
                                                                 double mass);
 
-/// In place of the number of a collider or of a particle.
+/// Stands for no collider or no particle.
 #define ECHINUS_NONE UINT32_MAX
 
-/// A contact that pushed in the last frame, between a particle, edge or face of the deformable and a
+/// A contact of the last frame, between a particle, edge or face of the deformable and a
 /// collider, or between two elements of the deformable.
 typedef struct echinus_contact_point {
-    double position[3];    ///< on the deformable, when it pushed last in the frame; world coordinates
-    double normal[3];      ///< unit, towards the deformable; towards its first part where both are its own
-    double gap;            ///< when it pushed last; positive
-    double normal_impulse; ///< on the deformable (its first part) along the normal in the frame, N s
-    double friction_impulse[3]; ///< the same across the normal, N s
+    double position[3];         ///< the last one in the frame, on the deformable; world coordinates
+    double normal[3];           ///< unit, towards the deformable, or its first part if both are its own
+    double gap;                 ///< the last one in the frame; positive
+    double normal_impulse;      ///< on the deformable (its first part), along the normal, N s
+    double friction_impulse[3]; ///< of friction, perpendicular to the normal, N s
     uint32_t collider;          ///< ECHINUS_NONE: the contact is of the deformable with itself
     /// The particles of the first element, followed by those of the second one in self-collision: a vertex
     /// and the three of a face, or two and two of edges. Unused entries are ECHINUS_NONE.
     uint32_t particles[4];
 } echinus_contact_point;
 
-/// Sets whether the following frames record the contacts that push; off by default. It is not part of a saved
-/// state.
+/// Sets whether the following frames record their contacts; off by default. This setting is not part of a
+/// saved state.
 ECHINUS_API echinus_status echinus_simulation_record_contacts(echinus_simulation* simulation, int32_t is_on);
 
-/// The contacts that were recorded in the last frame. Their impulses divided by the time step sum to the
-/// opposite of the load on each collider, except for the loads of attached particles and of truncated ones.
-/// None under ECHINUS_SOLVER_JAKOBSEN.
+/// Returns the contacts that were recorded in the last frame. Their impulses divided by the time step sum to
+/// the opposite of the load on each collider, except for the loads of attached particles and of truncated
+/// ones. ECHINUS_SOLVER_JAKOBSEN records none.
 /// @param points  out, echinus_contact_point
 ECHINUS_API echinus_status echinus_simulation_contact_points(const echinus_simulation* simulation,
                                                              echinus_array** points);
@@ -1418,7 +1419,7 @@ ECHINUS_API void echinus_particle_collision_destroy(echinus_particle_collision* 
 ECHINUS_API echinus_status echinus_particle_collision_set_collider_pose(echinus_particle_collision* collision,
                                                                         size_t index,
                                                                         const echinus_pose* pose);
-/// Places a collider at a pose at once: nothing is swept in between.
+/// Places a collider at a pose at once, without sweeping particles in between.
 ECHINUS_API echinus_status echinus_particle_collision_place_collider(echinus_particle_collision* collision,
                                                                      size_t index, const echinus_pose* pose);
 

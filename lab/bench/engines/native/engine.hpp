@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-/// What an engine is to do; lab/bench/engines/runners.py has the contract.
+/// The task of an engine; lab/bench/engines/runners.py defines the contract.
 struct Task {
     echinus::TriangleMesh model, cloth; ///< y is up
     bool is_matched = false;            ///< the setup "matched", not "recommended"
@@ -30,7 +30,7 @@ class Engine {
     virtual std::string version() const = 0;
     virtual std::string configuration() const = 0;
     virtual unsigned substeps() const = 0; ///< of a frame
-    /// What is set, and to what.
+    /// The names and values of the settings.
     virtual std::map<std::string, std::string> settings() const = 0;
 
     virtual void run_frame() = 0;

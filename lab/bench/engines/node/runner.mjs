@@ -1,4 +1,5 @@
-// What the runners in Node have in common: their arguments, and the folder that they write (lab/bench/engines/runners.py).
+// The common part of the runners in Node: their arguments, and the folder that they write
+// (lab/bench/engines/runners.py).
 import { readFileSync, writeFileSync } from 'node:fs';
 import { createRequire } from 'node:module';
 import { join } from 'node:path';

@@ -1,4 +1,4 @@
-"""What labels points: the exact map through Python, and what others use, each asked as its users ask it.
+"""The systems that label points: the exact map through Python, and others, each called as its users would.
 
 A system has `contains(points, out)` or `signed_distance(points, out)` or both; arrays are contiguous and float32.
 """

@@ -4,13 +4,13 @@ import type { Settings } from '../../settings';
 import type { Body } from '../cloth_scene';
 import type { SolidMesh } from './solids';
 
-/** What happens around a model: by default sheets fall on it (sheets.ts). */
+/** The scene around a model: by default sheets fall on it (sheets.ts). */
 export interface Act {
     /** The model, where the act makes it. */
     solid?: SolidMesh;
     /** Its vertices at a time, where it deforms: at 0 those of `solid`. It does so while surfaces collide, which alone are kept off faces that move. */
     shape?(seconds: number): Float32Array<ArrayBuffer>;
-    /** What the camera shows, and what lengths and gravity are measured by, where that is not the model alone. */
+    /** The sphere that the camera shows, and to which lengths and gravity are scaled, if it is not that of the model. */
     body?: Pick<Body, 'centre' | 'radius' | 'up'>;
     /** How high the ground is, along up, where it is not under the model. */
     floor?: number;
