@@ -27,9 +27,9 @@ const ZOOM = 1.1;
 const WORDS_MS = 250;
 
 const HINTS: Record<Settings['hand'], (pulled: string, moved: string) => string> = {
-    cloth: (pulled) => `Drag the ${pulled} to pull it. Drag the background to turn the view.`,
+    cloth: (pulled) => `Drag the ${pulled} to pull it, and the background to turn the view.`,
     ball: () => 'The ball follows the pointer. Drag to turn the view.',
-    model: (_, moved) => `Drag the ${moved} to move it. Drag the background to turn the view.`,
+    model: (_, moved) => `Drag the ${moved} to move it, and the background to turn the view.`,
 };
 /** The deformable of a sample that the pointer pulls, and the model that it moves. */
 const PULLED: Partial<Record<Sample, string>> = { figure: 'skirt', organ: 'organ', ring: 'kerchief', flag: 'flag' };
@@ -412,10 +412,11 @@ class App {
         const falls = this.#settings.view === 'cloth';
         if (falls && !(news && view.positions)) return;
         this.#worded = now;
-        showHeadline(this.#map, falls && news ? { particles: this.#particles, soft: news.soft, counts, ...collisionOf(this.#settings), slowness: this.#figures.slowness.times } : undefined);
+        showHeadline(this.#map, falls && news ? { place: this.#other ? 'Left: ' : '', particles: this.#particles, soft: news.soft, counts, ...collisionOf(this.#settings), slowness: this.#figures.slowness.times } : undefined);
         if (!this.#other) return;
-        showHalf('half-left', undefined, this.#main.counts);
-        showHalf('half-right', this.#settings.beside === 'map' ? 'The paper\u2019s map' : 'Particles only', this.#other.counts);
+        const [left, right] = this.#settings.beside === 'map' ? ['Exact map', 'The paper\u2019s map'] : ['Surface collision', 'Particles only'];
+        showHalf('half-left', left, this.#main.counts);
+        showHalf('half-right', right, this.#other.counts);
     }
 
     // ---- The visitor's actions

@@ -28,7 +28,7 @@ export class Client {
         worker.onmessage = ({ data }: MessageEvent<FromWorker>) => this.#hear(data);
         worker.onerror = ({ message }) => {
             this.stop();
-            const sentence = message ? `the simulation has stopped (${message})` : 'the simulation did not start: a part of this page could not be loaded';
+            const sentence = message ? `The simulation has stopped (${message}).` : 'The simulation did not start: a part of this page could not be loaded.';
             this.#hear({ kind: 'failed', sentence, code: 'Crashed' });
         };
         return worker;

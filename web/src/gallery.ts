@@ -18,7 +18,7 @@ const EXAMPLES: readonly Example[] = [
     { name: 'organ', title: 'A soft organ', caption: 'push it with the probe', link: 'model=organ&hand=model', model: 'organ' },
     { name: 'ring', title: 'Through a ring', caption: 'pulled through, and released', link: 'model=ring', model: 'ring' },
     { name: 'flag', title: 'A flag in the wind', caption: 'shake its pole', link: 'model=flag', model: 'flag' },
-    { name: 'layers', title: 'Ten layers', caption: 'no layer through another', link: 'model=layers&particles=1000', model: 'layers' },
+    { name: 'layers', title: 'Five layers', caption: 'no layer through another', link: 'model=layers&particles=1000', model: 'layers' },
     { name: 'beside', title: 'Exact or approximate', caption: 'two maps, side by side', link: 'beside=map', model: 'horse' },
 ];
 

@@ -52,6 +52,10 @@ interface PointerWishes {
     obstacle: THREE.Object3D;
 }
 
+/** A model may be a thin rod, as the probe is: places around the pointer where it is held, too, in pixels. */
+const AROUND = [[0, 0], [5, 0], [-5, 0], [0, 5], [0, -5], [10, 0], [-10, 0], [0, 10], [0, -10]] as const;
+const EXACTLY = AROUND.slice(0, 1);
+
 /** How often the cloth under the pointer is looked for. */
 const LOOK_MS = 80;
 
@@ -69,18 +73,25 @@ export function enablePointer(canvas: HTMLCanvasElement, stage: Stage, wishes: P
     let held: Settings['hand'] = 'cloth';
     let looked = 0;
 
-    const aim = ({ clientX, clientY }: PointerEvent): number => {
+    const aim = ({ clientX, clientY }: PointerEvent, [right, down]: readonly [number, number] = [0, 0]): number => {
         const { left, top, width, height } = canvas.getBoundingClientRect();
-        const x = (clientX - left) / width;
-        ray.setFromCamera(stage.inHalf(x, (clientY - top) / height), stage.camera);
+        const x = (clientX + right - left) / width;
+        ray.setFromCamera(stage.inHalf(x, (clientY + down - top) / height), stage.camera);
         return x;
     };
-    /** The point of the cloth or model that the pointer could grab. */
-    const under = (x: number, hand: Settings['hand']) => {
-        const onModel = ray.intersectObject(wishes.obstacle, false)[0];
-        const onCloth = wishes.clothAt(x).pick(ray);
-        if (hand === 'model') return onModel ?? onCloth;
-        return onCloth && !(onModel && onModel.distance < 0.99 * onCloth.distance) ? onCloth : undefined;
+    /** The place where the pointer would hold the cloth or the model. Aims at the pointer in the end. */
+    const under = (event: PointerEvent, hand: Settings['hand'], places: readonly (readonly [number, number])[]) => {
+        let hit: { point: THREE.Vector3; particle?: number } | undefined;
+        for (const offset of places) {
+            const x = aim(event, offset);
+            const onModel = ray.intersectObject(wishes.obstacle, false)[0];
+            const onCloth = wishes.clothAt(x).pick(ray);
+            if (hand === 'model') hit = onModel ?? onCloth;
+            else if (onCloth && !(onModel && onModel.distance < 0.99 * onCloth.distance)) hit = onCloth;
+            if (hit) break;
+        }
+        aim(event);
+        return hit;
     };
 
     // Before the orbit controls receive it, so that they can be disabled.
@@ -94,11 +105,11 @@ export function enablePointer(canvas: HTMLCanvasElement, stage: Stage, wishes: P
                 return;
             }
             if (event.button !== 0 || !event.isPrimary || !event.isTrusted) return;
-            const x = aim(event);
+            aim(event);
             const hand = wishes.hand();
             if (!hand) return wishes.hover(ray); // a finger hovers by touching
             if (hand === 'ball' && event.pointerType === 'mouse') return; // which leads it without a button
-            const hit = hand === 'ball' ? { point: begin } : under(x, hand);
+            const hit = hand === 'ball' ? { point: begin } : under(event, hand, hand === 'model' ? AROUND : EXACTLY);
             if (!hit) return;
             stage.orbiting = false;
             hold = event;
@@ -106,15 +117,15 @@ export function enablePointer(canvas: HTMLCanvasElement, stage: Stage, wishes: P
             canvas.setPointerCapture(event.pointerId);
             canvas.classList.add('dragging');
             if (hand === 'ball') return wishes.lead(ray.ray);
-            begin.copy(hit.point);
             plane.setFromNormalAndCoplanarPoint(stage.camera.getWorldDirection(new THREE.Vector3()), hit.point);
-            if (hand === 'cloth' && 'particle' in hit) wishes.grab(hit.particle, hit.point.toArray());
+            ray.ray.intersectPlane(plane, begin);
+            if (hand === 'cloth' && 'particle' in hit && hit.particle !== undefined) wishes.grab(hit.particle, hit.point.toArray());
         },
         { capture: true },
     );
     canvas.addEventListener('pointermove', (event) => {
-        const x = aim(event);
-        if (!hold) return look(event, x);
+        aim(event);
+        if (!hold) return look(event);
         if (event.pointerId !== hold.pointerId) return;
         hold = event;
         if (held === 'ball') return wishes.lead(ray.ray);
@@ -122,13 +133,13 @@ export function enablePointer(canvas: HTMLCanvasElement, stage: Stage, wishes: P
         if (held === 'cloth') wishes.drag(target.toArray());
         else wishes.hold(target.clone().sub(begin).toArray());
     });
-    const look = (event: PointerEvent, x: number) => {
+    const look = (event: PointerEvent) => {
         wishes.hover(ray);
         const hand = wishes.hand();
         if (hand === 'ball' && event.buttons === 0) wishes.lead(ray.ray);
         if (event.buttons > 0 || event.timeStamp - looked < LOOK_MS) return;
         looked = event.timeStamp;
-        canvas.classList.toggle('over-cloth', hand !== undefined && hand !== 'ball' && under(x, hand) !== undefined);
+        canvas.classList.toggle('over-cloth', hand !== undefined && hand !== 'ball' && under(event, hand, EXACTLY) !== undefined);
     };
     const release = () => {
         hold = undefined;

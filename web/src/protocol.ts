@@ -59,7 +59,7 @@ export type FromWorker =
     | { kind: 'settled'; turn: number; inForce?: { turn: number; settings: Settings } };
 
 /** The stages of opening a model that take time. */
-export type Stage = 'reading' | 'mending' | 'building the map' | 'laying the cloth';
+export type Stage = 'reading' | 'repairing' | 'building the map' | 'laying the cloth';
 
 export interface ClothNews {
     faces: Uint32Array;

@@ -57,7 +57,7 @@ const MADE_HERE: readonly Sample[] = ['torus', 'sphere', 'figure', 'organ', 'rin
 export const SAMPLES: readonly Sample[] = HAS_HORSE ? ['horse', ...MADE_HERE] : MADE_HERE;
 /** Their names in the list of models. */
 export const SAMPLE_NAMES: Readonly<Record<Sample, string>> = {
-    horse: 'Horse', torus: 'Torus', sphere: 'Sphere', figure: 'Dancer and skirt', organ: 'Organ and probe', ring: 'Ring and kerchief', flag: 'Flag', layers: 'Ten layers',
+    horse: 'Horse', torus: 'Torus', sphere: 'Sphere', figure: 'Dancer and skirt', organ: 'Organ and probe', ring: 'Ring and kerchief', flag: 'Flag', layers: 'Five layers',
 };
 
 export const DEFAULTS: Readonly<Settings> = {

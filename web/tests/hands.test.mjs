@@ -84,7 +84,7 @@ test('opening a large file shows what is being done, and can be cancelled', asyn
     await untilFrame(page, 5);
     await page.locator('#file').setInputFiles({ name: 'large.stl', mimeType: 'model/stl', buffer: torusStl(600, 400) });
     await page.locator('#progress').waitFor();
-    assert.match(await page.locator('#progress span').textContent(), /^large\.stl: (reading|mending|building the map|laying the cloth)$/);
+    assert.match(await page.locator('#progress span').textContent(), /^large\.stl: (reading|repairing|building the map|laying the cloth)$/);
     await page.locator('#progress button').click();
     await page.waitForFunction(() => document.getElementById('subtitle').textContent.startsWith('sphere'));
     await untilFrame(page, 10);
@@ -242,6 +242,22 @@ test('where the system asks for reduced motion the cloth waits, and the tour doe
     await page.keyboard.press('t');
     await page.waitForTimeout(8000); // longer than a stop lasts otherwise
     assert.equal(await page.locator('#tour').getAttribute('data-stop'), '0');
+    await browser.close(page);
+});
+
+test('a thin probe is held from a little beside it, too', async () => {
+    const page = await browser.open('#model=organ&particles=1500&hand=model', SMALL);
+    await untilFrame(page, 1);
+    await page.keyboard.press('Space');
+    const { x, y, width, height } = await page.locator('#canvas').boundingBox();
+    let held = 0;
+    for (let across = -60; across <= 60; across += 5) {
+        await page.mouse.move(x + 0.5 * width + across, y + 0.3 * height);
+        await page.mouse.down();
+        if (await page.locator('#canvas.dragging').isVisible()) ++held;
+        await page.mouse.up();
+    }
+    assert.ok(held >= 5 && held < 15, `held at ${held} of 25 places, 5 pixels apart`);
     await browser.close(page);
 });
 

@@ -171,7 +171,7 @@ async function particlesIn(page) {
 test('a worker that does not load is reported once, and not restarted endlessly', async () => {
     const page = await browser.open(LINK, { ...SMALL, beforeLoad: withoutWorker });
     await page.locator('#notice').waitFor();
-    assert.match(await notice(page), /^the simulation did not start/);
+    assert.match(await notice(page), /^The simulation did not start/);
     await page.waitForTimeout(500);
     const begun = await page.evaluate(() => globalThis.workersBegun);
     assert.ok(begun <= 2, `${begun} workers`); // one may fail before the page listens

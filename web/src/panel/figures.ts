@@ -100,6 +100,8 @@ export class FigureStrip {
 
 /** A cloth or a soft body, what is counted of it, and what keeps it from intersecting. */
 export interface Cloth {
+    /** The half of the picture that the words are about, where there are two. */
+    place: string;
     particles: number;
     soft: boolean;
     counts: Counts;
@@ -116,7 +118,7 @@ export function showHeadline(map: MapNews, cloth?: Cloth): void {
     const isExact = map.kind === 'exact';
     const parts = cloth
         ? [
-              make('span', `${count(cloth.particles)} ${cloth.soft ? 'particles of a soft body' : 'particles'}, `),
+              make('span', `${cloth.place}${count(cloth.particles)} ${cloth.soft ? 'particles of a soft body' : 'particles'}, `),
               verdict(cloth),
               make('span', whatIsOff(cloth)),
               make('span', `, ${isExact ? '' : 'the paper\u2019s '}${ofMap}`),
@@ -153,10 +155,10 @@ function wrongsOf({ inside = 0, withModel = 0, own = 0 }: Counts, self: boolean)
 }
 
 /** Beneath a half of the picture. */
-export function showHalf(id: 'half-left' | 'half-right', title: string | undefined, counts: Counts): void {
+export function showHalf(id: 'half-left' | 'half-right', title: string, counts: Counts): void {
     const half = byId(id);
     const { inside = 0, withModel } = counts;
-    if (title) half.querySelector('strong')!.textContent = title;
+    half.querySelector('strong')!.textContent = title;
     const cut = withModel === undefined ? '' : withModel === 0 ? ', none cut' : `, ${numbered(withModel, 'pair', 'pairs')} of faces cut`;
     half.querySelector('span')!.textContent = `${inside === 0 ? 'none' : count(inside)} inside${cut}`;
     half.className = wrongsOf(counts, false).length > 0 ? 'bad' : 'good';

@@ -25,8 +25,8 @@ export class ClothView {
     readonly #edge = new Edge();
     readonly #cut = new THREE.Mesh(facesOf(this.mesh.geometry), warning());
     readonly #threads = new THREE.LineSegments(threadsOf(this.mesh.geometry), new THREE.LineBasicMaterial({ color: CLOTH }));
-    readonly #cutMarks = glow(this.#cut.geometry, 0.25); // three on a face, and faces that are cut lie side by side
-    readonly #wrong = glow();
+    readonly #cutMarks = glow(this.#cut.geometry, 6, 0.25); // three on a face, and faces that are cut lie side by side
+    readonly #wrong = glow(undefined, 9);
     #weave: THREE.Texture | undefined;
     #cloth: Partial<ClothNews> & Pick<ClothNews, 'faces'> = NO_CLOTH;
     #shown: FrameArrays | undefined;
@@ -56,7 +56,7 @@ export class ClothView {
         this.#front.color.set(cloth.soft ? FLESH : CLOTH);
         this.#lay(sheet(NOTHING, NO_CLOTH));
         this.markWrong(new Uint32Array(0));
-        this.#edge.begin(cloth.faces);
+        this.#edge.begin(cloth.faces, cloth.tints);
         this.#refine();
     }
 

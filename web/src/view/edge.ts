@@ -1,22 +1,19 @@
 import * as THREE from 'three';
 import type { FrameArrays } from '../protocol';
-import { CLOTH } from './colours';
-import { matte } from './material';
+import { CLOTH, TINTS } from './colours';
 
 /** The narrow strip between the two sides of a cloth, where it ends. */
 export class Edge {
-    readonly mesh = new THREE.Mesh(new THREE.BufferGeometry(), matte(CLOTH));
+    readonly mesh = new THREE.Mesh(new THREE.BufferGeometry(), new THREE.MeshLambertMaterial({ vertexColors: true, flatShading: true, side: THREE.DoubleSide }));
     /** Two particles for each piece of the border, and the third of the face beside it. */
     #pieces = new Uint32Array(0);
     #faces: Uint32Array | undefined;
-
-    constructor() {
-        (this.mesh.material as THREE.MeshLambertMaterial).flatShading = true;
-    }
+    #tints: Float32Array | undefined;
 
     /** The border is found when it is needed first. */
-    begin(faces: Uint32Array): void {
+    begin(faces: Uint32Array, tints: Float32Array | undefined): void {
         this.#faces = faces;
+        this.#tints = tints;
         this.mesh.geometry.dispose();
         this.mesh.geometry = new THREE.BufferGeometry();
     }
@@ -29,7 +26,20 @@ export class Edge {
         for (let piece = 0; piece < count; ++piece) corners.push(...[0, 1, 3, 0, 3, 2].map((k) => 4 * piece + k));
         this.mesh.geometry
             .setIndex(corners)
-            .setAttribute('position', new THREE.BufferAttribute(new Float32Array(12 * count), 3).setUsage(THREE.DynamicDrawUsage));
+            .setAttribute('position', new THREE.BufferAttribute(new Float32Array(12 * count), 3).setUsage(THREE.DynamicDrawUsage))
+            .setAttribute('color', new THREE.BufferAttribute(this.#colours(), 3));
+    }
+
+    /** In the colour of the piece of cloth that it ends, as fabric.ts mixes it. */
+    #colours(): Float32Array<ArrayBuffer> {
+        const colours = new Float32Array(6 * this.#pieces.length);
+        const [first, middle, last] = TINTS.map((hex) => new THREE.Color(hex)), usual = new THREE.Color(CLOTH);
+        this.#pieces.forEach((particle, i) => {
+            const tint = this.#tints?.[particle];
+            const colour = tint === undefined ? usual : tint < 0.5 ? first.clone().lerp(middle, 2 * tint) : middle.clone().lerp(last, 2 * tint - 1);
+            for (const end of [0, 3]) colour.toArray(colours, 6 * i + end);
+        });
+        return colours;
     }
 
     /** @param half  of the thickness */

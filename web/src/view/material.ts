@@ -17,11 +17,11 @@ export function matte(front: number, back = front): THREE.MeshLambertMaterial {
     return material;
 }
 
-/** Marks on what is wrong, seen through everything in front: a face may be smaller than a pixel. */
-export function glow(geometry = new THREE.BufferGeometry(), opacity = 1): THREE.Points {
+/** Marks on faults, seen through everything in front: a face may be smaller than a pixel. Small ones, which do not hide what comes through. @param size  in pixels */
+export function glow(geometry = new THREE.BufferGeometry(), size: number, opacity = 1): THREE.Points {
     const points = new THREE.Points(
         geometry,
-        new THREE.PointsMaterial({ color: WRONG, size: 15, sizeAttenuation: false, map: spot(), opacity, transparent: true, depthTest: false, depthWrite: false }),
+        new THREE.PointsMaterial({ color: WRONG, size, sizeAttenuation: false, map: spot(), opacity, transparent: true, depthTest: false, depthWrite: false }),
     );
     points.renderOrder = 5;
     points.frustumCulled = false;

@@ -65,7 +65,7 @@ function makeSample(echinus: Echinus, sample: Exclude<Sample, 'horse'>, act: Act
  */
 export async function prepareFile(name: string, bytes: ArrayBuffer, companions: readonly File[] = []): Promise<Reading> {
     const ending = name.toLowerCase().split('.').pop();
-    if (ending === 'glb' && !beginsAs(bytes, 'glTF')) throw new Error(`${name}: it does not begin as a .glb file does, with "glTF"`);
+    if (ending === 'glb' && !beginsAs(bytes, 'glTF')) throw new Error(`${name}: it does not begin with "glTF", as a .glb file does`);
     switch (ending) {
         case '3ds':
             return welding(name, await described(name, async () => (await import('./loaders')).read3ds(bytes)));
@@ -79,7 +79,7 @@ export async function prepareFile(name: string, bytes: ArrayBuffer, companions: 
         case 'off':
             return (echinus) => ({ name, mesh: echinus.readMesh(bytes, name), up: 'z' });
         default:
-            throw new Error(`${name}: only models that end in .obj, .ply, .stl, .off, .3ds, .glb or .gltf can be opened`);
+            throw new Error(`${name}: the page opens only .obj, .ply, .stl, .off, .3ds, .glb and .gltf files`);
     }
 }
 

@@ -90,7 +90,7 @@ export class Playground {
         this.#act = model.act ?? sheets();
         this.#mesh = model.mesh;
         try {
-            tell('mending');
+            tell('repairing');
             if (settings.mend) this.#mend();
             this.#report = this.#mesh.report();
             this.#faults = this.#mesh.faults();

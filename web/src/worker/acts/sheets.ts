@@ -48,11 +48,11 @@ function aboveModel(settings: Settings, body: Body) {
 const sheetOf = (columns: number, radius: number) => ({ size: [SIZE * radius, SIZE * radius] as [number, number], particles: [columns, columns] as [number, number] });
 
 /** Of the ball's frame; apart: between two of them at the start, turn: of each against the one below. */
-const LAYERS = { count: 10, size: 1.9, apart: 0.07, turn: Math.PI / 20 };
+const LAYERS = { count: 5, size: 1.9, apart: 0.07, turn: Math.PI / 20 };
 
 const columnsOfLayer = (particles: number): number => columnsOf(particles / LAYERS.count);
 
-/** Ten sheets fall on a ball, each on the one before it. */
+/** Five sheets fall on a ball, each on the one before it. */
 export function layers(): Act {
     return {
         body: { centre: [0, 0, 0.15], radius: 1.3, up: 'z' },
