@@ -27,9 +27,9 @@ const ZOOM = 1.1;
 const WORDS_MS = 250;
 
 const HINTS: Record<Settings['hand'], (pulled: string, moved: string) => string> = {
-    cloth: (pulled) => `Drag the ${pulled} to pull it, and the background to turn the view.`,
+    cloth: (pulled) => `Drag the ${pulled}, or the background to turn the view.`,
     ball: () => 'The ball follows the pointer. Drag to turn the view.',
-    model: (_, moved) => `Drag the ${moved} to move it, and the background to turn the view.`,
+    model: (_, moved) => `Drag the ${moved}, or the background to turn the view.`,
 };
 /** The deformable of a sample that the pointer pulls, and the model that it moves. */
 const PULLED: Partial<Record<Sample, string>> = { figure: 'skirt', organ: 'organ', ring: 'kerchief', flag: 'flag' };
