@@ -89,6 +89,8 @@ export class Stage {
     #home = '';
     #sight: Sight | undefined;
     #arrival = 0;
+    /** Where the camera was at its last change. */
+    #last = '';
     /** The camera was moved, and stands at `standpoint` now. */
     onArrival = () => {};
     /** The graphics context was lost; three.js continues once it is restored. */
@@ -133,8 +135,11 @@ export class Stage {
         this.camera.updateProjectionMatrix();
         this.#controls.target.copy(middle);
         this.#controls.update();
-        this.#home = toText(this.#stand());
+        this.#home = this.#last = toText(this.#stand());
         this.#controls.addEventListener('change', () => {
+            const now = toText(this.#stand());
+            if (now === this.#last) return; // at the least distance the controls report a change with each picture
+            this.#last = now;
             clearTimeout(this.#arrival);
             this.#arrival = window.setTimeout(() => this.onArrival(), ARRIVAL_MS);
         });
