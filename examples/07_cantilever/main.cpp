@@ -28,7 +28,9 @@ int main(int argument_count, char** arguments) try {
 
     // The drag of the air makes the lowest oscillation die away soon.
     const double pace = 3.516 * std::sqrt(young / density) * height / std::sqrt(12.0);
-    SimulationOptions options{.gravity = {0, 0, -gravity}, .air_drag = 1.6 * pace};
+    SimulationOptions options{
+        .solver = NewtonOptions{.air_drag = 1.6 * pace, .collision = CollisionMode::Particles},
+        .gravity = {0, 0, -gravity}};
     Simulation simulation(make_soft_body(mesh, material), {}, options);
     while (simulation.frame() * options.time_step * pace < 12) simulation.step();
 

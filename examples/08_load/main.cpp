@@ -18,7 +18,7 @@ int main() try {
     Collider ball{.map = ExactMap::build(make_sphere(0.3, 40, 20))};
     ball.pose.translation = {0, 0, 0.8};
     SimulationOptions options;
-    options.surface_collision = true;
+    options.newton().collision = CollisionMode::Surfaces;
     options.thickness = 0.01;
     Simulation simulation(make_cloth(sheet), {ball}, options);
 

@@ -60,7 +60,6 @@ static echinus_status drop(const echinus_deformable* deformable, const echinus_m
     echinus_simulation_options_init(&options, sizeof options);
     options.density = CLOTH_DENSITY;
     options.thickness = 0.004;
-    options.surface_collision = options.self_collision = 1;
     echinus_collider_init(&collider, sizeof collider, dish);
     status = echinus_simulation_create(deformable, &collider, 1, &options, &simulation);
     *borne = 0;

@@ -12,7 +12,6 @@ export function clothOnKnot(echinus) {
         model: 'the knot', // its map is there already
         cloth: { size: [3.6, 3.6], particles: [40, 40], position: [0, 0.9, 0], rotation: { axis: [1, 0, 0], degrees: -90 }, thickness: 0.015 },
         gravity: [0, -9.81, 0],
-        self_collision: true,
     });
     const simulation = scene.makeSimulation(map);
     const material = new MeshStandardMaterial({ color: 0xd8572a, roughness: 0.8, side: DoubleSide });

@@ -29,7 +29,7 @@ struct ColliderMap {
     using Kind = std::variant<DistanceMap, ExactMap, std::shared_ptr<const CustomMap>>;
     Kind kind;
     /// For a map that is not exact, the exact map of the same mesh, whose faces
-    /// SimulationOptions::surface_collision needs: `kind` pushes particles out, and surfaces are kept off
+    /// CollisionMode::Surfaces needs: `kind` pushes particles out, and surfaces are kept off
     /// these faces. Queries ignore it.
     std::optional<ExactMap> surface{};
 

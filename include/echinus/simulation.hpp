@@ -15,6 +15,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <variant>
 #include <vector>
 
 ECHINUS_EXPORT_BEGIN
@@ -70,9 +71,9 @@ struct Handle {
 /// Particles, their constraints and materials, all in world units and axes.
 struct Deformable {
     std::vector<Vec3f> positions; ///< [particle_count]
-    /// [particle_count] The position of a particle one frame ago at its present velocity: positions -
-    /// previous_positions = velocity * time_step. With Jakobsen it is the actual previous position.
-    std::vector<Vec3f> previous_positions;
+    /// [particle_count] Units per second. If empty, all particles are at rest, and a simulation stores that
+    /// here.
+    std::vector<Vec3f> velocities{};
     /// [particle_count] 1 / mass; 0 for a pinned particle, which stays in place or moves with its attachment,
     /// and which no collider pushes. Jakobsen: in any unit, since only ratios matter. Newton takes the masses
     /// of soft bodies from here, in kg, and those of cloth from its ClothMaterial.
@@ -174,20 +175,7 @@ struct RestCondition {
     std::uint32_t frame_count = 60; ///< at least 1
 };
 
-/// The method by which a deformable moves.
-enum class SolverKind : std::uint8_t {
-    /// A continuous material in SI units (docs/mechanics.md): each step minimises the energy of inertia,
-    /// material and contact by Newton's method with multigrid. Cloth and soft bodies stretch as their
-    /// materials say, whatever the resolution and the time step; 1/60 s per frame is a good step.
-    Newton,
-    /// The paper's method (section 2.3), for reproduction and comparison: Verlet integration, distance
-    /// constraints of whose error each relaxation removes a share (Jakobsen 2001), and collision of
-    /// particles. More relaxations per second make a stiffer cloth, so frames of 1/240 s or less are needed.
-    /// This solver refuses tetrahedra and surface_collision, and measures no loads.
-    Jakobsen,
-};
-
-/// The material of cloth, for SolverKind::Newton. The defaults are those of a cotton, in SI units. Faces of
+/// The material of cloth, for NewtonOptions. The defaults are those of a cotton, in SI units. Faces of
 /// tetrahedra are not cloth: bodies have their own material.
 struct ClothMaterial {
     double density = 0.2;            ///< mass per area, kg/m^2; positive
@@ -197,30 +185,83 @@ struct ClothMaterial {
     double bending_stiffness = 1e-5; ///< N m; not negative
     double damping = 0.01; ///< viscosity divided by stiffness, seconds; not negative. Motions that take much
                            ///< longer are hardly damped
+
+    bool operator==(const ClothMaterial&) const = default;
 };
 
-struct SimulationOptions {
-    SolverKind solver = SolverKind::Newton;
-    double time_step = 1.0 / 60; ///< seconds per frame. Jakobsen needs a quarter of that or less: halving the
-                                 ///< step doubles the computing time and leaves a quarter of the stretch
-    /// Jakobsen: number of relaxations per frame, of all distance constraints and then of all contacts. More
+/// The parts of a deformable that collide.
+enum class CollisionMode : std::uint8_t {
+    /// Particles collide with colliders. An edge of the model may protrude between them.
+    Particles,
+    /// Edges and faces collide with colliders, too: no face of the deformable intersects a collider, within
+    /// the limits of docs/limits.md (docs/surfaces.md explains the method). A collider needs an exact map for
+    /// that, as its map or as ColliderMap::surface; with one that has none only particles collide. The exact
+    /// map of an open mesh does not need allow_open_colliders, and keeps each particle on its side. At the
+    /// start nothing may intersect and no particle may be inside a closed model (but see
+    /// NewtonOptions::untangle).
+    Surfaces,
+    /// The faces of the deformable do not intersect each other either.
+    SurfacesAndSelf,
+};
+
+/// A continuous material in SI units (docs/mechanics.md): each step minimises the energy of inertia, material
+/// and contact by Newton's method with multigrid. Cloth and soft bodies stretch as their materials say,
+/// whatever the resolution and the time step; 1/60 s per frame is a good step.
+struct NewtonOptions {
+    ClothMaterial material{};
+    /// Largest number of steps of Newton's method in each frame or substep, and twice as many while nothing
+    /// touches; fewer are taken if it converges. Fewer than two leave contacts unresolved.
+    std::uint32_t step_count = 4;
+    /// Tolerance of Newton's method, relative to the mean edge length. It has converged if the decrease of
+    /// the energy corresponds to a root-mean-square displacement of at most this length.
+    double tolerance = 5e-4;
+    /// Resistance of still air, 1/s: the rate at which a free velocity decays, whatever the time step. 0 is a
+    /// vacuum.
+    double air_drag = 0.5;
+    /// Pressure inside the closed pieces of cloth in excess of the surrounding pressure, N/m^2. It is
+    /// constant, like that of a pump, and pushes each face outwards. Not negative.
+    double pressure = 0;
+    CollisionMode collision = CollisionMode::SurfacesAndSelf;
+    /// Distance in units that layers of the deformable keep from each other; by default the thickness. It is
+    /// less near small faces: at most 0.4 of the least height of a face, and a quarter of the mean edge
+    /// length, so that neighbours have room.
+    std::optional<double> self_thickness{};
+    /// Separate a start that intersects, or that lies inside a closed model, before the first frame instead
+    /// of refusing it, by moving particles that are not pinned. A start that cannot be separated is refused.
+    /// It takes up to about a hundred times the time of a search for intersecting pairs (intersections.hpp).
+    /// Needs the collision of surfaces.
+    bool untangle = false;
+
+    bool operator==(const NewtonOptions&) const = default;
+};
+
+/// The paper's method (section 2.3), for reproduction and comparison: Verlet integration, distance
+/// constraints of whose error each relaxation removes a share (Jakobsen 2001), and collision of particles.
+/// More relaxations per second make a stiffer cloth, so frames of 1/240 s or less are needed: halving the
+/// step doubles the computing time and leaves a quarter of the stretch. This solver refuses tetrahedra and
+/// measures no loads.
+struct JakobsenOptions {
+    /// Number of relaxations per frame, of all distance constraints and then of all contacts. More
     /// relaxations take longer and leave less stretch.
     std::uint32_t iteration_count = 10;
-    Vec3d gravity{0, 0, -9.81}; ///< units per second squared
-    double drag = 0.005; ///< Jakobsen: share of the velocity that is lost per frame, 0 to 1. Newton: air_drag
-    /// Jakobsen: share of a constraint's error that one relaxation removes, by StickKind. 1 removes all of
-    /// it; a value between 1 and 2 overshoots, which propagates tension farther per relaxation.
+    double drag = 0.005; ///< share of the velocity that is lost per frame, 0 to 1
+    /// Share of a constraint's error that one relaxation removes, by StickKind. 1 removes all of it; a value
+    /// between 1 and 2 overshoots, which propagates tension farther per relaxation.
     std::array<double, kStickKindCount> stiffness{1, 1, 0.3};
-    ClothMaterial material{}; ///< Newton only
-    /// Newton: largest number of steps of Newton's method in each frame or substep, and twice as many while
-    /// nothing touches; fewer are taken if it converges. Fewer than two leave contacts unresolved.
-    std::uint32_t newton_step_count = 4;
-    /// Newton: tolerance of Newton's method, relative to the mean edge length. It has converged if the
-    /// decrease of the energy corresponds to a root-mean-square displacement of at most this length.
-    double newton_tolerance = 5e-4;
-    /// Newton: resistance of still air, 1/s: the rate at which a free velocity decays, whatever the time
-    /// step. 0 is a vacuum.
-    double air_drag = 0.5;
+    /// If false, no particle is rescued; those that cross the surface of an exact map are counted as lost and
+    /// stay there. This only serves to demonstrate the effect of the proof at the end of a frame.
+    bool keep_free = true;
+
+    bool operator==(const JakobsenOptions&) const = default;
+};
+
+/// The method by which a deformable moves: the alternatives of SimulationOptions::solver, in their order.
+enum class SolverKind : std::uint8_t { Newton, Jakobsen };
+
+struct SimulationOptions {
+    std::variant<NewtonOptions, JakobsenOptions> solver{};
+    double time_step = 1.0 / 60; ///< seconds per frame. Jakobsen needs a quarter of that or less
+    Vec3d gravity{0, 0, -9.81};  ///< units per second squared
     /// Distance in units that the deformable keeps from colliders. By default it is half the mean rest length
     /// of the structural constraints or, for soft bodies, half the mean edge length (docs/thickness.md).
     /// Newton: at least a fiftieth of the mean edge length. Jakobsen: 0 is possible but slow, since particles
@@ -230,31 +271,10 @@ struct SimulationOptions {
     /// reduced by the coefficient times the length of the push-out, and is not reversed.
     double friction = 0.5;
     RestCondition rest{};
-    /// Jakobsen: if false, no particle is rescued; those that cross the surface of an exact map are counted
-    /// as lost and stay there. This only serves to demonstrate the effect of the proof at the end of a frame.
-    bool keep_free = true;
-    /// Accept exact maps of open meshes. Nothing is guaranteed for them: near a hole the inside is only
-    /// estimated, so particles get in there, and some are pushed out through the surface; lost_count counts
-    /// them. Prefer a closed mesh (see repair()) or a distance map.
+    /// Accept exact maps of open meshes for the collision of particles. Nothing is guaranteed for them: near
+    /// a hole the inside is only estimated, so particles get in there, and some are pushed out through the
+    /// surface; lost_count counts them. Prefer a closed mesh (see repair()) or a distance map.
     bool allow_open_colliders = false;
-    /// Edges and faces collide, too, not only particles: no face of the deformable intersects a collider,
-    /// within the limits of docs/limits.md (docs/surfaces.md explains the method). Every collider needs an
-    /// exact map, as its map or as ColliderMap::surface; with Newton only particles collide with a collider
-    /// without one. The exact map of an open mesh does not need allow_open_colliders, and keeps each particle
-    /// on its side. At the start nothing may intersect and no particle may be inside a closed model (but see
-    /// untangle), and keep_free must be true.
-    bool surface_collision = false;
-    /// The faces of the deformable do not intersect each other either. Needs surface_collision.
-    bool self_collision = false;
-    /// Distance in units that layers of the deformable keep from each other; by default the thickness. It is
-    /// less near small faces: at most 0.4 of the least height of a face, and a quarter of the mean edge
-    /// length, so that neighbours have room.
-    std::optional<double> self_thickness{};
-    /// Separate a start that intersects, or that lies inside a closed model, before the first frame instead
-    /// of refusing it, by moving particles that are not pinned. A start that cannot be separated is refused.
-    /// Needs surface_collision. It takes up to about a hundred times the time of a search for intersecting
-    /// pairs (intersections.hpp).
-    bool untangle = false;
     /// Largest distance in units of a particle from the initial middle of the deformable. A particle farther
     /// away ends the simulation as diverged. 0 means 10 000 times the initial extent of the deformable.
     double bound = 0;
@@ -265,9 +285,20 @@ struct SimulationOptions {
     /// air; then the wind must be 0, too.
     Vec3d wind{};         ///< units per second
     double wind_rate = 0; ///< per second
-    /// Newton: pressure inside the closed pieces of cloth in excess of the surrounding pressure, N/m^2. It is
-    /// constant, like that of a pump, and pushes each face outwards. Not negative.
-    double pressure = 0;
+
+    SolverKind kind() const { return static_cast<SolverKind>(solver.index()); }
+    /// The options of the solver that is set. @throws std::bad_variant_access if it is the other one
+    NewtonOptions& newton() { return std::get<NewtonOptions>(solver); }
+    const NewtonOptions& newton() const { return std::get<NewtonOptions>(solver); }
+    JakobsenOptions& jakobsen() { return std::get<JakobsenOptions>(solver); }
+    const JakobsenOptions& jakobsen() const { return std::get<JakobsenOptions>(solver); }
+    /// Whether edges and faces collide with colliders, and with each other. Not with Jakobsen.
+    bool surfaces_collide() const {
+        return kind() == SolverKind::Newton && newton().collision != CollisionMode::Particles;
+    }
+    bool layers_collide() const {
+        return kind() == SolverKind::Newton && newton().collision == CollisionMode::SurfacesAndSelf;
+    }
 };
 
 /// A force and a torque on a collider, in world axes.
@@ -311,12 +342,12 @@ struct SimulationProfile {
     /// not free of it. It counts once for each such map, and again in each such frame. A particle that began
     /// inside and has not been outside yet does not count.
     std::uint64_t lost_count = 0;
-    /// With surface_collision: number of times that the displacement of a particle in a frame or substep was
+    /// Where surfaces collide: number of times that the displacement of a particle in a frame or substep was
     /// truncated, because its edges or faces could have met a surface on the path.
     std::uint64_t truncated_count = 0;
-    /// With surface_collision: vertex-face and edge-edge pairs whose distance was measured.
+    /// Where surfaces collide: vertex-face and edge-edge pairs whose distance was measured.
     std::uint64_t measured_pair_count = 0;
-    /// With surface_collision: unresolved vertex-face and edge-edge pairs, for which no free space was proven
+    /// Where surfaces collide: unresolved vertex-face and edge-edge pairs, for which no free space was proven
     /// at the start of a substep, summed over all substeps: a pinned particle was driven through a surface,
     /// or colliders left no room between them. While it is 0, no faces intersect at the end of a frame,
     /// except by rounding hundreds of a collider's radii away from the origin, which is not counted
@@ -354,10 +385,10 @@ class Simulation {
     /// @throws Error InvalidOptions, naming the fault, when an option is out of range, the arrays of the
     /// deformable do not fit together, a constraint or a face refers to a particle that does not exist, a
     /// number is not finite, or a collider has a scale of 0, a rotation that does not have unit length, a
-    /// null pointer for a map, or the exact map of an open mesh without options.allow_open_colliders. With
-    /// options.surface_collision it is also thrown when a collider has no exact map, or when the deformable
-    /// initially intersects a collider or, with options.self_collision, itself, or is inside a collider, and
-    /// options.untangle is not set or could not separate them: the message names the first pairs
+    /// null pointer for a map, or, where only particles collide, the exact map of an open mesh without
+    /// options.allow_open_colliders. Where surfaces collide it is also thrown when the deformable initially
+    /// intersects a collider or, with CollisionMode::SurfacesAndSelf, itself, or is inside a collider, and
+    /// untangle is not set or could not separate them: the message names the first pairs
     Simulation(Deformable deformable, std::vector<Collider> colliders, const SimulationOptions& options);
     ~Simulation();
     Simulation(const Simulation& other);
@@ -367,10 +398,10 @@ class Simulation {
 
     /// Computes one frame. Newton: colliders advance by their velocities and carry along nearby particles;
     /// then the energy is minimised, and every step towards the minimum is limited so that faces stay apart:
-    /// when a frame ends, no face intersects a collider or, with options.self_collision, another face.
-    /// docs/limits.md lists the limits; squeezed_count counts most of the cases in which they were exceeded.
-    /// A frame in which a collider moves far, or nothing finds room to move, is divided into up to 64
-    /// substeps. Memory is kept from frame to frame: a frame that needs no more than the previous ones
+    /// when a frame ends, no face intersects a collider or, with CollisionMode::SurfacesAndSelf, another
+    /// face. docs/limits.md lists the limits; squeezed_count counts most of the cases in which they were
+    /// exceeded. A frame in which a collider moves far, or nothing finds room to move, is divided into up to
+    /// 64 substeps. Memory is kept from frame to frame: a frame that needs no more than the previous ones
     /// allocates nothing, except for the maps of deforming colliders.
     ///
     /// Jakobsen: a frame consists of Verlet integration with drag, the motion of the colliders,
@@ -416,7 +447,7 @@ class Simulation {
     /// The residual at the end of the last frame. With Jakobsen a large residual calls for more relaxations
     /// or smaller steps. It takes about a third of the time of a relaxation of all constraints.
     Residual residual() const;
-    /// XXH64 hash of the bits of all positions and previous positions.
+    /// XXH64 hash of the bits of all positions and velocities.
     std::uint64_t state_hash() const;
 
     // Motion of colliders. The last call of one of these four functions applies. All have the precondition
@@ -455,13 +486,13 @@ class Simulation {
     /// between. Objects that are teleported together keep their relative positions, up to rounding.
     /// @throws Error InvalidOptions when the motion is not finite or the length of its rotation differs from
     /// 1 by more than 1e-4, a collider does not exist, the solver is Jakobsen, only one of a collider and the
-    /// particles attached to it is teleported, or, with options().surface_collision, the deformable would
+    /// particles attached to it is teleported, or, where surfaces collide, the deformable would
     /// intersect a collider; the last error comes from step() if the time is in the future. Then nothing has
     /// changed, and the teleport is dropped
     void teleport(const Teleport& teleport);
 
     // Deforming colliders: their vertices move, and their faces stay the same. These functions need
-    // collider_index < colliders().size(), an exact map and options().surface_collision. Surfaces are kept
+    // collider_index < colliders().size(), an exact map, and surfaces collide. Surfaces are kept
     // off the moving faces as off any others (docs/surfaces.md), and attached particles follow the face that
     // was nearest to them when the collider first deformed. Each frame that deforms a collider rebuilds its
     // exact map on one thread, and may allocate.
@@ -471,7 +502,7 @@ class Simulation {
     /// @param vertices_local  [vertex_count] the vertices of the mesh from which its exact map was built, in
     /// the same order
     /// @throws Error InvalidOptions for another number of vertices, a position that is not finite, a collider
-    /// without an exact map, or without options().surface_collision; as ExactMap::build(). Then nothing has
+    /// without an exact map, or where only particles collide; as ExactMap::build(). Then nothing has
     /// changed
     void set_collider_vertices(std::size_t collider_index, std::span<const Vec3f> vertices_local);
 

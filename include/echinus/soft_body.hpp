@@ -30,20 +30,20 @@ struct SoftBodyOptions {
 
 /// Makes a soft body at rest, in O(n log n). Its particles are the mesh's vertices and its faces the mesh's
 /// boundary(), in their order. The mass of a vertex is a quarter of the masses of the tetrahedra around it. A
-/// body needs SolverKind::Newton.
+/// body needs NewtonOptions.
 /// @throws Error InvalidMesh, naming the tetrahedron or vertex, as require_valid_tetrahedra(), and if a
 /// vertex belongs to no tetrahedron; InvalidOptions for options out of range, and for vertices that the mesh
 /// does not have
 Deformable make_soft_body(const TetrahedralMesh& mesh, const SoftBodyOptions& options);
 
-/// Combines several deformables into one, such as a cloth and an organ, in O(n). With self_collision they
-/// collide with each other. The particles of the parts, and everything that refers to them, follow one after
-/// the other.
+/// Combines several deformables into one, such as a cloth and an organ, in O(n). With
+/// CollisionMode::SurfacesAndSelf they collide with each other. The particles of the parts, and everything
+/// that refers to them, follow one after the other.
 /// @throws Error InvalidOptions for a part that no simulation would accept; the message names the part and
 /// its fault
 Deformable combine(std::span<const Deformable> parts);
 
-/// Multiplies all masses of a deformable by a finite, positive factor. With SolverKind::Newton the masses of
+/// Multiplies all masses of a deformable by a finite, positive factor. With NewtonOptions the masses of
 /// cloth come from its ClothMaterial instead.
 Deformable with_masses_times(double factor, Deformable deformable);
 

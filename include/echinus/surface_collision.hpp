@@ -32,10 +32,10 @@ struct SurfaceCollisionOptions {
 /// Keeps not only the particles of any solver (ParticleCollision), but also the faces between them, off
 /// models and off each other. Each step goes from an intersection-free state towards the solver's positions,
 /// as far as the paths are proven to be free of collisions (docs/surfaces.md). Contact and friction are those
-/// of SolverKind::Newton for a surface without stiffness.
+/// of NewtonOptions for a surface without stiffness.
 ///
 /// After correct() no face intersects a model or, with self_collision, another face. The exceptions, which
-/// unresolved_count() counts, are those of SimulationOptions::surface_collision. Only particles collide with
+/// unresolved_count() counts, are those of CollisionMode::Surfaces. Only particles collide with
 /// a collider that has no exact map. Contact begins to push at the thickness, and pushes harder the closer a
 /// face is; after a hard impact the distance may therefore be small. Copies are independent. Different
 /// threads may use different objects at the same time, but only one thread may use an object at a time.
@@ -72,7 +72,7 @@ class SurfaceCollision {
     /// it has no component into the surface. A particle whose position is not finite, or more than 1e12 units
     /// from the previous one, keeps its previous position as an obstacle for others, and is not corrected.
     ///
-    /// The cost is that of a frame of a simulation with surface_collision (docs/surfaces_measured.md). The
+    /// The cost is that of a frame of a simulation whose surfaces collide (docs/surfaces_measured.md). The
     /// function allocates when its arrays of pairs grow.
     /// @param positions   [n] in: the solver's positions; out: corrected positions
     /// @param velocities  [n] in and out, units per second; or empty

@@ -281,6 +281,11 @@ std::optional<std::string> JsonObject::ignore(const char* key, const std::string
     return scene_name_ + ": the key " + path_of(key) + " has no effect " + instead;
 }
 
+std::optional<std::string> JsonObject::warn_of_former(const char* key, const std::string& instead) const {
+    if (!has(key)) return std::nullopt;
+    return scene_name_ + ": the key " + path_of(key) + " is of an earlier version; write " + instead;
+}
+
 void JsonObject::refuse(const char* key, const std::string& expected) const {
     fail(path_of(key) + " is " + excerpt(value_.at(key)) + "; it must be " + expected);
 }

@@ -78,6 +78,9 @@ class JsonObject {
     /// @return the sentence about it, if it is there
     std::optional<std::string> ignore(const char* key, const std::string& instead);
 
+    /// The sentence about a key of an earlier version, if it is there. @param instead  to write
+    std::optional<std::string> warn_of_former(const char* key, const std::string& instead) const;
+
     /// Refuses the value of a key: `expected` completes "...; it must be ".
     [[noreturn]] void refuse(const char* key, const std::string& expected) const;
 

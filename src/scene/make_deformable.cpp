@@ -161,24 +161,23 @@ Vec3d centre_of_mass(const Deformable& deformable) {
     return mass > 0 ? sum * (1 / mass) : Vec3d{};
 }
 
-void set_velocity(const SceneVelocity& velocity, const SimulationOptions& options, Deformable& deformable) {
+void set_velocity(const SceneVelocity& velocity, Deformable& deformable) {
     const Vec3d centre = centre_of_mass(deformable);
+    deformable.velocities.resize(deformable.particle_count());
     for (std::size_t i = 0; i < deformable.particle_count(); ++i) {
         if (deformable.inverse_masses[i] == 0) continue;
-        const Vec3d place(deformable.positions[i]);
-        const Vec3d of_particle = velocity.linear + cross(velocity.angular, place - centre);
-        deformable.previous_positions[i] = Vec3f(place - of_particle * options.time_step);
+        const Vec3d arm = Vec3d(deformable.positions[i]) - centre;
+        deformable.velocities[i] = Vec3f(velocity.linear + cross(velocity.angular, arm));
     }
 }
 
 Deformable cloth_of(const Scene& scene, const ClothMeshes& meshes) {
     Deformable cloth = make_cloth(scene, meshes);
-    set_velocity(scene.cloth_velocity, scene.simulation, cloth);
+    set_velocity(scene.cloth_velocity, cloth);
     return cloth;
 }
 
-Deformable make_body(const SceneBody& body, const TetrahedralMesh* read,
-                     const SimulationOptions& simulation) {
+Deformable make_body(const SceneBody& body, const TetrahedralMesh* read) {
     const TetrahedralMesh mesh =
         read != nullptr && !read->tetrahedra.empty() ? *read : make_solid(body.mesh, body.element);
     require_no_origin(mesh.origin, "the soft body"); // before boxes choose vertices
@@ -187,7 +186,7 @@ Deformable make_body(const SceneBody& body, const TetrahedralMesh* read,
     options.attachments = attached(body.attachments, mesh.vertices, "attachments");
     Deformable made = make_soft_body(mesh, options);
     add_handles(body.handles, mesh.vertices, "handles", made);
-    set_velocity(body.velocity, simulation, made);
+    set_velocity(body.velocity, made);
     return made;
 }
 
@@ -218,8 +217,7 @@ Deformable make_deformable(const Scene& scene, const ClothMeshes& meshes) {
     for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
         try {
             const TetrahedralMesh* read = i < meshes.bodies.size() ? &meshes.bodies[i] : nullptr;
-            parts.push_back(
-                passing_through(scene.bodies[i].ignores, make_body(scene.bodies[i], read, scene.simulation)));
+            parts.push_back(passing_through(scene.bodies[i].ignores, make_body(scene.bodies[i], read)));
         } catch (const Error& error) {
             throw Error(error.code(), "bodies[" + std::to_string(i) + "]: " + error.what());
         }

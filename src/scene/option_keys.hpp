@@ -80,16 +80,23 @@ inline void read_body_options(JsonObject& object, SoftBodyOptions& o) {
 }
 
 inline void read_solver_options(JsonObject& object, SimulationOptions& o) {
+    SolverKind kind = o.kind();
+    auto newton = o.kind() == SolverKind::Newton ? o.newton() : NewtonOptions{};
+    auto jakobsen = o.kind() == SolverKind::Jakobsen ? o.jakobsen() : JakobsenOptions{};
     object.read("time_step", o.time_step, {1e-9, 1e9});
-    object.read("iterations", o.iteration_count, {1, 1e6});
-    object.read("newton_steps", o.newton_step_count, {1, 1000});
+    object.read("iterations", jakobsen.iteration_count, {1, 1e6});
+    object.read("newton_steps", newton.step_count, {1, 1000});
     object.read("gravity", o.gravity, {-1e9, 1e9});
     object.read("thread_count", o.thread_count, {0, 1024});
-    object.read("newton_tolerance", o.newton_tolerance, {0, 1});
+    object.read("newton_tolerance", newton.tolerance, {0, 1});
     object.read("wind", o.wind, {-1e9, 1e9});
     object.read("wind_rate", o.wind_rate, {0, 1e9});
-    if (o.solver != SolverKind::Newton)
+    if (kind != SolverKind::Newton)
         object.refuse_keys({"newton_steps", "newton_tolerance"}, "solver", "newton");
+    if (kind == SolverKind::Newton)
+        o.solver = newton;
+    else
+        o.solver = jakobsen;
 }
 
 inline void read_rest_options(JsonObject& object, SimulationOptions& o) {
@@ -99,40 +106,77 @@ inline void read_rest_options(JsonObject& object, SimulationOptions& o) {
 }
 
 inline void read_material_options(JsonObject& object, SimulationOptions& o) {
-    object.read("drag", o.drag, {0, 1});
+    SolverKind kind = o.kind();
+    auto newton = o.kind() == SolverKind::Newton ? o.newton() : NewtonOptions{};
+    auto jakobsen = o.kind() == SolverKind::Jakobsen ? o.jakobsen() : JakobsenOptions{};
+    object.read("drag", jakobsen.drag, {0, 1});
     object.read("friction", o.friction, {0, 1e9});
-    object.read("air_drag", o.air_drag, {0, 1e6});
-    if (o.solver != SolverKind::Newton) object.refuse_keys({"air_drag"}, "solver", "newton");
+    object.read("air_drag", newton.air_drag, {0, 1e6});
+    if (kind != SolverKind::Newton) object.refuse_keys({"air_drag"}, "solver", "newton");
+    if (kind == SolverKind::Newton)
+        o.solver = newton;
+    else
+        o.solver = jakobsen;
 }
 
 inline void read_jakobsen_options(JsonObject& object, SimulationOptions& o) {
-    object.read("structural", o.stiffness[0], {0, 1.99});
-    object.read("shear", o.stiffness[1], {0, 1.99});
-    object.read("bending", o.stiffness[2], {0, 1.99});
+    SolverKind kind = o.kind();
+    auto newton = o.kind() == SolverKind::Newton ? o.newton() : NewtonOptions{};
+    auto jakobsen = o.kind() == SolverKind::Jakobsen ? o.jakobsen() : JakobsenOptions{};
+    object.read("structural", jakobsen.stiffness[0], {0, 1.99});
+    object.read("shear", jakobsen.stiffness[1], {0, 1.99});
+    object.read("bending", jakobsen.stiffness[2], {0, 1.99});
+    if (kind == SolverKind::Newton)
+        o.solver = newton;
+    else
+        o.solver = jakobsen;
 }
 
 inline void read_thickness_options(JsonObject& object, SimulationOptions& o) {
+    SolverKind kind = o.kind();
+    auto newton = o.kind() == SolverKind::Newton ? o.newton() : NewtonOptions{};
+    auto jakobsen = o.kind() == SolverKind::Jakobsen ? o.jakobsen() : JakobsenOptions{};
     object.read("thickness", o.thickness, {0, 1e9});
-    object.read("self_thickness", o.self_thickness, {0, 1e9});
+    object.read("self_thickness", newton.self_thickness, {0, 1e9});
+    if (kind != SolverKind::Newton) object.refuse_keys({"self_thickness"}, "solver", "newton");
+    if (kind == SolverKind::Newton)
+        o.solver = newton;
+    else
+        o.solver = jakobsen;
 }
 
 inline void read_surfaces_options(JsonObject& object, SimulationOptions& o) {
-    object.read("surface_collision", o.surface_collision);
-    object.read("self_collision", o.self_collision);
-    object.read("untangle", o.untangle);
+    SolverKind kind = o.kind();
+    auto newton = o.kind() == SolverKind::Newton ? o.newton() : NewtonOptions{};
+    auto jakobsen = o.kind() == SolverKind::Jakobsen ? o.jakobsen() : JakobsenOptions{};
+    if (const auto word = object.read_word("collision", {"particles", "surfaces", "surfaces_and_self"}))
+        newton.collision = static_cast<CollisionMode>(*word);
+    object.read("untangle", newton.untangle);
+    if (kind != SolverKind::Newton) object.refuse_keys({"collision", "untangle"}, "solver", "newton");
+    if (kind == SolverKind::Newton)
+        o.solver = newton;
+    else
+        o.solver = jakobsen;
 }
 
 inline void read_newton_options(JsonObject& object, SimulationOptions& o) {
-    object.read("density", o.material.density, {1e-6, 1e6});
-    object.read("stretch_stiffness", o.material.stretch_stiffness, {1e-6, 1e9});
-    object.read("shear_stiffness", o.material.shear_stiffness, {0, 1e9});
-    object.read("bending_stiffness", o.material.bending_stiffness, {0, 1e6});
-    object.read("damping", o.material.damping, {0, 1e6});
-    object.read("pressure", o.pressure, {0, 1e9});
-    if (o.solver != SolverKind::Newton)
+    SolverKind kind = o.kind();
+    auto newton = o.kind() == SolverKind::Newton ? o.newton() : NewtonOptions{};
+    auto jakobsen = o.kind() == SolverKind::Jakobsen ? o.jakobsen() : JakobsenOptions{};
+    object.read("density", newton.material.density, {1e-6, 1e6});
+    object.read("stretch_stiffness", newton.material.stretch_stiffness, {1e-6, 1e9});
+    object.read("shear_stiffness", newton.material.shear_stiffness, {0, 1e9});
+    object.read("bending_stiffness", newton.material.bending_stiffness, {0, 1e6});
+    object.read("damping", newton.material.damping, {0, 1e6});
+    object.read("pressure", newton.pressure, {0, 1e9});
+    if (kind != SolverKind::Newton)
         object.refuse_keys(
             {"density", "stretch_stiffness", "shear_stiffness", "bending_stiffness", "damping", "pressure"},
             "solver", "newton");
+    if (kind == SolverKind::Newton)
+        o.solver = newton;
+    else
+        o.solver = jakobsen;
 }
 
 } // namespace echinus

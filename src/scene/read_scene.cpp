@@ -30,10 +30,6 @@ constexpr double kUnitTolerance = 1e-4;
 constexpr double kJakobsenTimeStep = 1.0 / 240;
 constexpr double kRadiansPerDegree = std::numbers::pi / 180;
 
-/// The defaults beside an exact map. Beside a distance map surfaces collide only where the scene asks for it.
-constexpr bool kSurfaceCollision = true;
-constexpr bool kSelfCollision = true; ///< where surfaces collide
-
 /// With "small_holes" and without "hole_edges".
 constexpr std::uint32_t kUsualHoleEdges = 32;
 
@@ -346,7 +342,7 @@ std::vector<SceneAttachment> read_attachments(JsonObject& object, const Scene& s
 template <typename ReadChoice>
 std::vector<SceneHandle> read_handles(JsonObject& object, const Scene& scene, const char* what,
                                       const ReadChoice& read_choice) {
-    if (scene.simulation.solver != SolverKind::Newton) object.refuse_keys({"handles"}, "solver", "newton");
+    if (scene.simulation.kind() != SolverKind::Newton) object.refuse_keys({"handles"}, "solver", "newton");
     std::vector<SceneHandle> handles;
     for (JsonObject& some : object.objects("handles")) {
         SceneHandle& handle = handles.emplace_back();
@@ -473,8 +469,10 @@ void read_cloth(JsonObject& root, Scene& scene) {
     if (!scene.has_cloth) return;
     root.require("cloth");
     auto cloth = root.object("cloth");
-    if (scene.simulation.solver != SolverKind::Newton) cloth->refuse_keys({"density"}, "solver", "newton");
-    cloth->read("density", scene.simulation.material.density, {1e-6, 1e6});
+    if (auto* newton = std::get_if<NewtonOptions>(&scene.simulation.solver))
+        cloth->read("density", newton->material.density, {1e-6, 1e6});
+    else
+        cloth->refuse_keys({"density"}, "solver", "newton");
     scene.cloth_velocity = read_velocity(*cloth);
     read_thickness_options(*cloth, scene.simulation);
     scene.cloth_ignores = read_ignores(*cloth, scene);
@@ -497,32 +495,53 @@ void read_material(JsonObject& root, Scene& scene) {
     read_jakobsen_options(*material, options);
     read_newton_options(*material, options);
     read_material_options(*material, options);
-    if (options.solver == SolverKind::Newton) ignore(*material, kOfTheMaterial, scene);
+    if (options.kind() == SolverKind::Newton) ignore(*material, kOfTheMaterial, scene);
     ignore(*material, kOfTheMaterialBefore, scene);
     material->finish();
+}
+
+/// The two keys in place of which `collision` is now. @param newton  null: the solver is another
+void read_former_collision(JsonObject& root, NewtonOptions* newton, Scene& scene) {
+    if (!root.has("surface_collision") && !root.has("self_collision")) return;
+    bool surfaces = newton != nullptr && newton->collision != CollisionMode::Particles;
+    root.read("surface_collision", surfaces);
+    bool self = surfaces;
+    root.read("self_collision", self);
+    if (self && !surfaces) root.refuse("self_collision", "false, or \"surface_collision\" must be true");
+    if (surfaces && newton == nullptr)
+        root.refuse("surface_collision", "false, or \"solver\" must be \"newton\"");
+    if (root.has("collision"))
+        root.refuse("collision", "the only key of its kind: leave surface_collision and self_collision out");
+    if (newton != nullptr)
+        newton->collision = self       ? CollisionMode::SurfacesAndSelf
+                            : surfaces ? CollisionMode::Surfaces
+                                       : CollisionMode::Particles;
+    const std::string instead = newton == nullptr ? "none: with jakobsen only particles collide"
+                                : self            ? "\"collision\": \"surfaces_and_self\""
+                                : surfaces        ? "\"collision\": \"surfaces\""
+                                                  : "\"collision\": \"particles\"";
+    for (const char* key : {"surface_collision", "self_collision"})
+        if (auto warning = root.warn_of_former(key, instead)) scene.warnings.push_back(*std::move(warning));
 }
 
 /// @pre the map and the solver were read
 void read_surfaces(JsonObject& root, Scene& scene) {
     const bool is_exact = std::holds_alternative<ExactMapOptions>(scene.map);
     SimulationOptions& options = scene.simulation;
-    const bool has_particles_only = options.solver == SolverKind::Jakobsen;
-    options.surface_collision = is_exact && !has_particles_only && kSurfaceCollision;
+    auto* const newton = std::get_if<NewtonOptions>(&options.solver);
+    if (newton != nullptr && !is_exact) newton->collision = CollisionMode::Particles;
+    read_former_collision(root, newton, scene);
     read_surfaces_options(root, options);
-    const bool surfaces = options.surface_collision;
-    if (surfaces && has_particles_only)
-        root.refuse("surface_collision", "false, or \"solver\" must be \"newton\"");
-    if (!root.has("self_collision")) options.self_collision = surfaces && kSelfCollision;
-    if (options.self_collision && !surfaces)
-        root.refuse("self_collision", "false, or \"surface_collision\" must be true");
+    const bool surfaces = options.surfaces_collide();
     for (const SceneCollider& collider : scene.colliders)
         if (collider.cache && !surfaces)
-            root.refuse(has_particles_only              ? "solver"
+            root.refuse(newton == nullptr               ? "solver"
+                        : root.has("collision")         ? "collision"
                         : root.has("surface_collision") ? "surface_collision"
                                                         : "map",
                         "set so that surfaces collide, since a collider has a vertex cache");
-    if (options.untangle && !surfaces)
-        root.refuse("untangle", "false, or \"surface_collision\" must be true");
+    if (newton != nullptr && newton->untangle && !surfaces)
+        root.refuse("untangle", "false, or \"collision\" must be \"surfaces\" or \"surfaces_and_self\"");
 }
 
 /// @pre the bodies were read
@@ -532,7 +551,7 @@ void read_solver(JsonObject& root, Scene& scene) {
     const std::size_t solver = root.read_word("solver", {"newton", "jakobsen", "verlet", "xpbd"}).value_or(0);
     if (solver == kJakobsen) {
         if (!scene.bodies.empty()) root.refuse("solver", "\"newton\" or left out where there are bodies");
-        options.solver = SolverKind::Jakobsen;
+        options.solver = JakobsenOptions{};
         options.time_step = kJakobsenTimeStep;
     }
     if (solver >= kVerlet)
@@ -542,16 +561,16 @@ void read_solver(JsonObject& root, Scene& scene) {
                                               "paper's solver"));
     read_solver_options(root, options);
     for (const SceneCollider& collider : scene.colliders)
-        if (collider.mass && options.solver != SolverKind::Newton)
+        if (collider.mass && options.kind() != SolverKind::Newton)
             root.refuse("solver", "\"newton\" or left out where a collider has a mass");
-    if (options.solver == SolverKind::Newton) ignore(root, kOfTheScene, scene);
+    if (options.kind() == SolverKind::Newton) ignore(root, kOfTheScene, scene);
     ignore(root, kOfTheSceneBefore, scene);
     if (options.wind != Vec3d{}) root.require("wind_rate");
 }
 
 /// @pre the colliders and the solver were read
 void read_teleports(JsonObject& root, Scene& scene) {
-    if (scene.simulation.solver != SolverKind::Newton) root.refuse_keys({"teleports"}, "solver", "newton");
+    if (scene.simulation.kind() != SolverKind::Newton) root.refuse_keys({"teleports"}, "solver", "newton");
     for (JsonObject& object : root.objects("teleports")) {
         Teleport& teleport = scene.teleports.emplace_back();
         object.require("time");

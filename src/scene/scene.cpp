@@ -93,7 +93,7 @@ Collider make_collider(const SceneCollider& collider, const ColliderMap& map) {
 
 ColliderMap make_collider_map(const Scene& scene, const TriangleMesh& mesh, unsigned thread_count) {
     ColliderMap map(build_map(mesh, scene.map, thread_count));
-    if (scene.simulation.surface_collision && !std::holds_alternative<ExactMap>(map.kind))
+    if (scene.simulation.surfaces_collide() && !std::holds_alternative<ExactMap>(map.kind))
         map.surface = ExactMap::build(mesh, {.thread_count = thread_count});
     return map;
 }

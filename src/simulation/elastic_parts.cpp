@@ -146,10 +146,10 @@ class Weigher {
 } // namespace
 
 ElasticParts elastic_parts(const Deformable& deformable, const SimulationOptions& options) {
-    ElasticParts parts = Weigher(deformable, options.material).weigh();
-    if (options.pressure > 0)
+    ElasticParts parts = Weigher(deformable, options.newton().material).weigh();
+    if (options.newton().pressure > 0)
         for (const Triangle& face : closed_pieces(deformable))
-            parts.pressed.push_back({face, options.pressure});
+            parts.pressed.push_back({face, options.newton().pressure});
     return parts;
 }
 

@@ -24,7 +24,8 @@ double mean_edge_of(const Deformable& deformable) {
 SimulationOptions contact_options(SimulationOptions options, double mean_edge) {
     const double least = std::max(threshold::kLeastThickness * mean_edge, threshold::kLeastThicknessOfAll);
     options.thickness = std::max(*options.thickness, least);
-    if (options.self_thickness) options.self_thickness = std::max(*options.self_thickness, least);
+    std::optional<double>& own = options.newton().self_thickness;
+    if (own) own = std::max(*own, least);
     return options;
 }
 
@@ -49,8 +50,7 @@ NewtonSolver::NewtonSolver(Deformable deformable_in, std::vector<Collider> colli
       thickness_(*contact_options(options, mean_edge_).thickness) {
     for (std::size_t i = 0; i < deformable.particle_count(); ++i) {
         motion_.places[i] = Vec3d(deformable.positions[i]);
-        motion_.velocities[i] =
-            (motion_.places[i] - Vec3d(deformable.previous_positions[i])) * (1 / options.time_step);
+        motion_.velocities[i] = Vec3d(deformable.velocities[i]);
         is_held_[i] = deformable.inverse_masses[i] == 0 ? 1 : 0;
     }
     for (const Handle& handle : deformable.handles)
@@ -65,7 +65,7 @@ NewtonSolver::NewtonSolver(Deformable deformable_in, std::vector<Collider> colli
             std::all_of(passes.begin(), passes.end(), [](std::uint8_t p) { return p != 0; });
         if (!passes.empty() && all_pass) meets_some_[c] = 0;
     }
-    if (options.surface_collision || !colliders.empty())
+    if (options.surfaces_collide() || !colliders.empty())
         contacts_.emplace(deformable, colliders, step_.masses(), strengths(), step_.bodies(),
                           contact_options(options, mean_edge_));
 }
@@ -193,7 +193,7 @@ void NewtonSolver::deform() {
 
 /// So that what is carried along keeps its gaps, and that impacts are solved where they happen.
 std::uint32_t NewtonSolver::part_count() {
-    if (!options.surface_collision) return 1;
+    if (!options.surfaces_collide()) return 1;
     find_now();
     const double room = threshold::kDecidingRoom * fastest() * options.time_step;
     double longest = handles_.longest_displacement(time_of(0), time_of(1));
@@ -218,7 +218,7 @@ std::uint32_t NewtonSolver::part_count() {
 
 /// Vertices of a collider that deforms do not go back.
 bool NewtonSolver::can_be_halved(float share) const {
-    return options.surface_collision && share > threshold::kLeastPartToMove &&
+    return options.surfaces_collide() && share > threshold::kLeastPartToMove &&
            std::none_of(deformations_.begin(), deformations_.end(),
                         [](const Deformation& deformation) { return deformation.motion != nullptr; });
 }
@@ -247,7 +247,7 @@ bool NewtonSolver::step_part(const FramePart& part) {
     }
     choose_orders(share < 1);
     const auto count = motion_.particle_count();
-    step_.begin(motion_, accelerations_, is_held_, seconds, options.air_drag,
+    step_.begin(motion_, accelerations_, is_held_, seconds, options.newton().air_drag,
                 {Places(from).subspan(count), Places(led).subspan(count)});
     step_.calm(from, places, workers_);
     if (!minimise(places, seconds, !can_be_halved(share))) {
@@ -295,7 +295,7 @@ bool NewtonSolver::find_start(const FramePart& part, bool is_least) {
     start_ = now_;
     attachments_.follow(colliders, deforming_, part.end, start_);
     handles_.follow(time_of(part.begin), time_of(part.end), start_);
-    if (!contacts_ || !options.surface_collision) return true;
+    if (!contacts_ || !options.surfaces_collide()) return true;
     const Stopwatch stopwatch(profile.collision_seconds);
     const CarryField field(colliders_before_, colliders, is_near_, deformations_, part,
                            threshold::kTouch * thickness_);
@@ -332,10 +332,10 @@ ScratchVector<Vec3d> NewtonSolver::guess(std::span<const Vec3d> start, double se
 /// @param may_stop  whether a step in which nothing can move is accepted
 /// @return whether the step is
 bool NewtonSolver::minimise(std::span<Vec3d> places, double seconds, bool may_stop) {
-    const std::uint32_t steps_in_contact = options.newton_step_count;
+    const std::uint32_t steps_in_contact = options.newton().step_count;
     const std::uint32_t steps_without = threshold::kStepsWithoutContact * steps_in_contact;
     StepBudget budget;
-    budget.tolerance = options.newton_tolerance * mean_edge_;
+    budget.tolerance = options.newton().tolerance * mean_edge_;
     if (!contacts_) {
         const Stopwatch stopwatch(profile.constraint_seconds);
         budget.newton_steps = steps_without;
@@ -395,9 +395,8 @@ void NewtonSolver::publish() {
 
 void NewtonSolver::publish_places() {
     for (std::size_t i = 0; i < motion_.particle_count(); ++i) {
-        const Vec3d place = motion_.places[i], velocity = motion_.velocities[i];
-        deformable.positions[i] = Vec3f(place);
-        deformable.previous_positions[i] = Vec3f(place - velocity * options.time_step);
+        deformable.positions[i] = Vec3f(motion_.places[i]);
+        deformable.velocities[i] = Vec3f(motion_.velocities[i]);
     }
 }
 
@@ -405,7 +404,7 @@ void NewtonSolver::set_particle_velocity(std::size_t particle, const Vec3d& velo
     if (is_held_[particle] != 0) return;
     motion_.velocities[particle] = velocity;
     motion_.is_smooth[particle] = 0;
-    deformable.previous_positions[particle] = Vec3f(motion_.places[particle] - velocity * options.time_step);
+    deformable.velocities[particle] = Vec3f(velocity);
 }
 
 void NewtonSolver::move_particles(const RigidTransform& motion) {
@@ -469,7 +468,7 @@ void NewtonSolver::archive(StateArchive& state) {
     for (std::size_t i = 0; i < motion_.particle_count(); ++i)
         state.require(is_finite(motion_.places[i]) && is_finite(motion_.velocities[i]));
     for (std::size_t c = 0; c < colliders.size(); ++c)
-        if (options.surface_collision && map_of_surface(colliders[c]) != nullptr)
+        if (options.surfaces_collide() && map_of_surface(colliders[c]) != nullptr)
             contacts_->place_obstacle(c, vertices_of(colliders[c], deforming_[c]));
     const double speed = largest_speed;
     publish();

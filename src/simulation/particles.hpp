@@ -57,12 +57,14 @@ struct Particles {
     std::vector<float> mobility; ///< 1, or 0 for a particle that is pinned
 
     Particles() = default;
-    explicit Particles(const Deformable& deformable) {
+    /// @param time_step  seconds per frame
+    Particles(const Deformable& deformable, double time_step) {
         for (const float inverse_mass : deformable.inverse_masses)
             mobility.push_back(inverse_mass == 0 ? 0.0F : 1.0F);
         positions.load(deformable.positions);
-        previous.load(deformable.previous_positions);
-        frame_start = positions;
+        frame_start = previous = positions;
+        for (std::size_t i = 0; i < deformable.velocities.size(); ++i)
+            set_velocity(i, Vec3d(deformable.velocities[i]) * time_step);
     }
     std::size_t count() const { return mobility.size(); }
     bool pinned(std::size_t i) const { return mobility[i] == 0; }

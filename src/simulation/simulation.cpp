@@ -111,7 +111,7 @@ std::uint64_t Simulation::state_hash() const {
     const auto hash_of = [](const std::vector<Vec3f>& points, std::uint64_t seed) {
         return XXH64(points.data(), points.size() * sizeof(Vec3f), seed);
     };
-    return hash_of(deformable().previous_positions, hash_of(deformable().positions, 0));
+    return hash_of(deformable().velocities, hash_of(deformable().positions, 0));
 }
 
 } // namespace echinus

@@ -63,9 +63,10 @@ Deformable valid_start(Deformable deformable, const std::vector<Collider>& colli
     require_valid_attachments(deformable, colliders.size());
     require_valid_filters(deformable, colliders.size());
     require_valid_handles(deformable);
+    deformable.velocities.resize(deformable.particle_count());
     // So that what is read of it later is whole, and that nothing that is parted stays stretched.
     if (deformable.rest_positions.empty()) deformable.rest_positions = deformable.positions;
-    if (options.untangle)
+    if (options.surfaces_collide() && options.newton().untangle)
         untangle(deformable, with_unit_rotations(colliders), with_thickness(options, deformable));
     return deformable;
 }
@@ -81,12 +82,12 @@ Solver::Solver(Deformable deformable_in, std::vector<Collider> colliders_in,
       deforming_(colliders.size()), rest_(options.rest, deformable.positions), bounds_(options, deformable),
       loads_(colliders.size()), start_hash_(hash_of(deformable.positions)) {
     for (const Collider& collider : colliders) start_poses_.push_back(collider.pose);
-    if (options.surface_collision) require_apart(deformable, colliders, options);
+    if (options.surfaces_collide()) require_apart(deformable, colliders, options);
 }
 
 std::unique_ptr<Solver> make_solver(Deformable deformable, std::vector<Collider> colliders,
                                     const SimulationOptions& options) {
-    if (options.solver == SolverKind::Jakobsen)
+    if (options.kind() == SolverKind::Jakobsen)
         return std::make_unique<JakobsenSolver>(std::move(deformable), std::move(colliders), options);
     return std::make_unique<NewtonSolver>(std::move(deformable), std::move(colliders), options);
 }
@@ -129,7 +130,7 @@ void Solver::move_colliders_on() {
 
 void Solver::set_free(std::size_t collider, double mass) {
     const std::string name = name_of_collider(collider);
-    require_option(options.solver == SolverKind::Newton,
+    require_option(options.kind() == SolverKind::Newton,
                    name + " cannot be free under the jakobsen solver, which measures no loads; use newton");
     const ExactMap* const map = map_of_surface(colliders[collider]);
     require_option(map != nullptr, name + " has no exact map, of which its centre of mass and inertia are");
@@ -144,15 +145,15 @@ void Solver::lead_surface(std::size_t collider, const Lead& lead) {
     if (surface) return lead(*surface);
     const std::string name = name_of_collider(collider);
     const auto* exact = std::get_if<ExactMap>(&colliders[collider].map.kind);
-    if (options.solver == SolverKind::Jakobsen)
+    if (options.kind() == SolverKind::Jakobsen)
         throw Error(ErrorCode::InvalidOptions,
                     name + " cannot deform under the jakobsen solver; use another solver for this scene");
-    if (exact == nullptr || !options.surface_collision)
+    if (exact == nullptr || !options.surfaces_collide())
         throw Error(ErrorCode::InvalidOptions,
                     name + (exact == nullptr
                                 ? " has no exact map, which a model that deforms needs"
-                                : " cannot deform without surface_collision, which keeps particles "
-                                  "out of faces that move; set it"));
+                                : " cannot deform where only particles collide, which faces that "
+                                  "move may pass; let surfaces collide"));
     surface.emplace(*exact, name);
     try {
         lead(*surface);

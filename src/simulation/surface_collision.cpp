@@ -27,15 +27,15 @@ SimulationOptions simulation_options(double thickness, const SurfaceCollisionOpt
     SimulationOptions all;
     all.time_step = 1;
     all.gravity = {};
-    all.material = {.stretch_stiffness = 1e-6, .shear_stiffness = 0, .bending_stiffness = 0, .damping = 0};
-    all.air_drag = 0;
+    all.solver = NewtonOptions{
+        .material = {.stretch_stiffness = 1e-6, .shear_stiffness = 0, .bending_stiffness = 0, .damping = 0},
+        .air_drag = 0,
+        .collision = options.self_collision ? CollisionMode::SurfacesAndSelf : CollisionMode::Surfaces,
+        .self_thickness = options.self_thickness,
+        .untangle = options.untangle};
     all.bound = 1e30; // where the solver sends its particles is not ours to judge
     all.thickness = thickness;
     all.friction = options.friction;
-    all.surface_collision = true;
-    all.self_collision = options.self_collision;
-    all.self_thickness = options.self_thickness;
-    all.untangle = options.untangle;
     all.thread_count = options.thread_count;
     return all;
 }
@@ -43,7 +43,6 @@ SimulationOptions simulation_options(double thickness, const SurfaceCollisionOpt
 Deformable deformable_of(std::vector<Vec3f> positions, std::vector<Triangle> faces) {
     const std::size_t count = positions.size();
     return {.positions = positions,
-            .previous_positions = std::move(positions),
             .inverse_masses = std::vector<float>(count, 1),
             .sticks = {},
             .faces = std::move(faces)};
@@ -116,7 +115,7 @@ void SurfaceCollision::State::write_back(std::span<Vec3f> positions, std::span<V
         corrected.push_back(i);
         positions[i] = now.positions[i];
         if (velocities.empty()) continue;
-        const Vec3d change = Vec3d(now.positions[i]) - Vec3d(now.previous_positions[i]) - particle.sent;
+        const Vec3d change = Vec3d(now.velocities[i]) - particle.sent; // in a step, the unit of time
         Vec3d motion = Vec3d(velocities[i]) * seconds + change;
         if (is_impact) motion = without_approach(positions[i], motion);
         velocities[i] = Vec3f(motion * (1 / seconds));

@@ -65,7 +65,7 @@ struct Fall {
     Fall() : map(c_map(c_torus())), by_cpp_map(ExactMap::build(make_torus(1.0, 0.4, 60, 24))) {
         echinus_simulation_options_init(&options, sizeof options);
         echinus_collider_init(&collider, sizeof collider, map.get());
-        options.surface_collision = 1;
+        options.collision = ECHINUS_COLLISION_SURFACES;
         collider.angular_velocity[0] = 1;
         by_cpp_collider.angular_velocity = {1, 0, 0};
     }
@@ -84,7 +84,7 @@ struct Fall {
     echinus_collider collider;
     Collider by_cpp_collider{.map = by_cpp_map};
     echinus_simulation_options options;
-    SimulationOptions by_cpp_options{.surface_collision = true};
+    SimulationOptions by_cpp_options{.solver = NewtonOptions{.collision = CollisionMode::Surfaces}};
 };
 
 TEST(CSimulations, FallAsInCpp) {
@@ -120,7 +120,6 @@ TEST(CSimulations, TakeEveryOption) {
     fall.options.time_step = 1.0 / 120;
     fall.options.newton_step_count = 3;
     fall.options.gravity[2] = -5;
-    fall.options.drag = 0.01;
     fall.options.stretch_stiffness = 800;
     fall.options.air_drag = 0.4;
     fall.options.thickness = 0.02;
@@ -129,23 +128,20 @@ TEST(CSimulations, TakeEveryOption) {
     fall.options.rest_distance = 0.01;
     fall.options.rest_speed = 0.3;
     fall.options.rest_frame_count = 7;
-    fall.options.surface_collision = fall.options.self_collision = 1;
+    fall.options.collision = ECHINUS_COLLISION_SURFACES_AND_SELF;
     fall.options.untangle = 1;
     fall.options.thread_count = 2;
     fall.options.self_thickness = 0.015;
-    fall.by_cpp_options = {.time_step = 1.0 / 120,
+    fall.by_cpp_options = {.solver = NewtonOptions{.material = {.stretch_stiffness = 800},
+                                                   .step_count = 3,
+                                                   .air_drag = 0.4,
+                                                   .self_thickness = 0.015,
+                                                   .untangle = true},
+                           .time_step = 1.0 / 120,
                            .gravity = {0, 0, -5},
-                           .drag = 0.01,
-                           .material = {.stretch_stiffness = 800},
-                           .newton_step_count = 3,
-                           .air_drag = 0.4,
                            .thickness = 0.02,
                            .friction = 0.2,
                            .rest = {.distance = 0.01, .speed = 0.3, .frame_count = 7},
-                           .surface_collision = true,
-                           .self_collision = true,
-                           .self_thickness = 0.015,
-                           .untangle = true,
                            .bound = 50,
                            .thread_count = 2};
     const CSimulation simulation = fall.make(c_small_sheet());
@@ -374,7 +370,6 @@ TEST(CDeformables, BeginAtRestAndWithEqualMassesWhereNothingIsSaid) {
     expect_ok(echinus_simulation_create(pair.get(), nullptr, 0, nullptr, out(simulation)));
     expect_ok(echinus_simulation_step(simulation.get()));
     Simulation by_cpp({.positions = {{0, 0, 0}, {1, 0, 0}},
-                       .previous_positions = {{0, 0, 0}, {1, 0, 0}},
                        .inverse_masses = {1, 1},
                        .sticks = {{0, 1, 1, StickKind::Structural}},
                        .faces = {}},

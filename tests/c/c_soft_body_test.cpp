@@ -90,12 +90,11 @@ CMesh c_mesh(const TriangleMesh& mesh) {
 struct BodyPair {
     BodyPair() : BodyPair(c_soft_body(), make_soft_body(block(), body_options())) {}
     BodyPair(const CDeformable& c_deformable, Deformable deformable)
-        : by_cpp(std::move(deformable), {{.map = ExactMap::build(kBall)}},
-                 {.surface_collision = true, .self_collision = true}) {
+        : by_cpp(std::move(deformable), {{.map = ExactMap::build(kBall)}}, {}) {
         const CMap map = c_map(c_mesh(kBall));
         echinus_simulation_options options;
         echinus_simulation_options_init(&options, sizeof options);
-        options.surface_collision = options.self_collision = 1;
+        options.collision = ECHINUS_COLLISION_SURFACES_AND_SELF;
         echinus_collider collider;
         echinus_collider_init(&collider, sizeof collider, map.get());
         expect_ok(echinus_simulation_create(c_deformable.get(), &collider, 1, &options, out(in_c)));

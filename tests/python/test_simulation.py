@@ -17,7 +17,7 @@ SCENE = ROOT / "scenes" / "torus_small.json"
 SHEET = {
     "model": {"torus": {}},
     "cloth": {"size": [3, 3], "particles": [12, 12], "position": [0, 0, 0.5]},
-    "surface_collision": False,
+    "collision": "particles",
 }
 HIGH = {**SHEET, "cloth": {**SHEET["cloth"], "position": [0, 0, 2]}}
 
@@ -105,18 +105,18 @@ def test_a_mesh_may_replace_the_file_of_the_cloth():
 
 
 def test_surfaces_collide_where_it_is_said():
-    simulation = ech.Simulation.from_scene(SHEET, surface_collision=True, self_collision=True)
-    assert simulation.options.surface_collision and simulation.options.self_collision
+    simulation = ech.Simulation.from_scene(SHEET, collision="surfaces_and_self")
+    assert simulation.options.collision == "surfaces_and_self"
     simulation.step(20)
     assert len(ech.intersecting_pairs(simulation.mesh, ech.make_torus())) == 0
     assert simulation.profile.measured_pair_count > 0
-    by_default = {key: value for key, value in SHEET.items() if key != "surface_collision"}
-    assert ech.Simulation.from_scene(by_default).options.self_collision
-    particles_only = ech.Simulation.from_scene({**by_default, "untangle": True}, surface_collision=False).options
-    assert not (particles_only.surface_collision or particles_only.self_collision or particles_only.untangle)
+    by_default = {key: value for key, value in SHEET.items() if key != "collision"}
+    assert ech.Simulation.from_scene(by_default).options.collision == "surfaces_and_self"
+    particles_only = ech.Simulation.from_scene({**by_default, "untangle": True}, collision="particles").options
+    assert particles_only.collision == "particles" and not particles_only.untangle
     sampled = ech.DistanceMap(ech.make_torus())
-    assert not ech.Simulation.from_scene(by_default, model=sampled).options.surface_collision
-    beside = ech.Simulation.from_scene({**SHEET, "map": {"kind": "distance"}}, surface_collision=True)
+    assert ech.Simulation.from_scene(by_default, model=sampled).options.collision == "particles"
+    beside = ech.Simulation.from_scene({**SHEET, "map": {"kind": "distance"}}, collision="surfaces")
     beside.step(20)
     assert len(ech.intersecting_pairs(beside.mesh, ech.make_torus())) == 0
 
@@ -126,7 +126,7 @@ def test_an_open_model_is_refused_unless_it_is_said():
         ech.Simulation.from_scene(SHEET, model=open_torus())
     assert raised.value.code == "invalid_mesh"
     ech.Simulation.from_scene(SHEET, model=open_torus(), allow_open_colliders=True).step()
-    ech.Simulation.from_scene(SHEET, model=open_torus(), surface_collision=True).step()
+    ech.Simulation.from_scene(SHEET, model=open_torus(), collision="surfaces_and_self").step()
 
 
 def test_models_are_looked_for_in_the_folders_that_are_named(tmp_path):

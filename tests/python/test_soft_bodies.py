@@ -79,7 +79,7 @@ def test_the_defaults_are_those_of_a_scene():
     soft = ech.Simulation(soft_box(), [BELOW]).options
     assert (soft.solver, soft.time_step) == ("newton", 1 / 60)
     sampled = ech.Simulation(cloth(), [ech.Collider(ech.DistanceMap(torus()), position=(0, 0, 9))]).options
-    assert not (sampled.surface_collision or sampled.self_collision)
+    assert sampled.collision == "surfaces_and_self"
 
 
 def test_the_contacts_of_a_body_at_rest_sum_to_its_weight():
@@ -181,7 +181,7 @@ def test_one_part_passes_through_a_collider_that_holds_the_other():
     table = ech.Collider(ech.ExactMap(ech.make_box((4, 4, 0.2))))
     sheets = [ech.make_cloth(column_count=6, row_count=6, width=0.5, height=0.5, position=(x, 0, 0.2)) for x in (-1, 1)]
     both = ech.combine([ech.passing_through(0, sheets[0]), sheets[1]])
-    run = ech.Simulation(both, [table], surface_collision=True, self_collision=True, thickness=0.01)
+    run = ech.Simulation(both, [table], thickness=0.01)
     run.step(30)
     assert run.positions[:36, 2].max() < -0.1 and run.positions[36:, 2].min() > 0.1
     for collider, error in ((-1, ValueError), ("0", TypeError)):
@@ -216,8 +216,8 @@ def test_deformables_and_caches_are_pickled_whole():
         {"gravity": (0, 0, np.nan)},
         {"iteration_count": 0},
         {"stretch_stiffness": 0},
-        {"surface_collision": False, "self_collision": True},
-        {"keep_free": False, "surface_collision": True},
+        {"solver": "jakobsen", "collision": "surfaces"},
+        {"collision": "particles", "untangle": True},
     ],
 )
 def test_options_out_of_range_are_refused_by_the_library(options):

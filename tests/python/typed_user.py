@@ -22,7 +22,7 @@ def labels(path: str, count: int) -> NDArray[np.bool_]:
 
 
 def run(scene: dict[str, Any]) -> list[NDArray[np.float32]]:
-    simulation = ech.Simulation.from_scene(scene, surface_collision=True)
+    simulation = ech.Simulation.from_scene(scene, collision="surfaces_and_self")
     frames = []
     try:
         while not simulation.at_rest and simulation.profile.lost_count == 0:

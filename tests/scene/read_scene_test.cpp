@@ -38,7 +38,7 @@ const char* const kMeshScene = R"({
               "position": [4, 5, 6], "rotation": {"axis": [1, 0, 0], "degrees": -90}, "velocity": [1, 2, -3],
               "thickness": 0.02, "self_thickness": 0.03, "pins": [3, 5],
               "attachments": {"from": [-1, -2, -3], "to": [1, 2, 3]}},
-    "surface_collision": true, "self_collision": true, "untangle": true, "thread_count": 3
+    "collision": "surfaces_and_self", "untangle": true, "thread_count": 3
 })";
 
 std::string refusal(const std::string& text) {
@@ -125,12 +125,12 @@ TEST(Scene, IsReadKeyByKey) {
     EXPECT_EQ(scene.cloth_velocity.linear, (Vec3d{1, 2, -3}));
     EXPECT_EQ(scene.cloth.pins, (std::vector<std::uint32_t>{0, 29 * 20 + 19}));
     EXPECT_EQ(scene.simulation.thickness, 0.02);
-    EXPECT_EQ(scene.simulation.stiffness, (std::array{1.1, 0.9, 0.2}));
+    EXPECT_EQ(scene.simulation.jakobsen().stiffness, (std::array{1.1, 0.9, 0.2}));
     EXPECT_EQ(scene.simulation.friction, 0.7);
-    EXPECT_EQ(scene.simulation.drag, 0.003);
+    EXPECT_EQ(scene.simulation.jakobsen().drag, 0.003);
     EXPECT_EQ(scene.simulation.gravity, (Vec3d{0, -9.8, 0}));
     EXPECT_EQ(scene.simulation.time_step, 0.01);
-    EXPECT_EQ(scene.simulation.iteration_count, 12u);
+    EXPECT_EQ(scene.simulation.jakobsen().iteration_count, 12u);
     EXPECT_EQ(scene.frame_limit, 500u);
     EXPECT_EQ(scene.simulation.rest.distance, 0.02);
     EXPECT_EQ(scene.simulation.rest.speed, 0.3);
@@ -148,10 +148,10 @@ TEST(Scene, OfAMeshIsReadKeyByKey) {
     EXPECT_NEAR(length(cloth.pose.rotation.apply({0, 0, 1}) - Vec3d{0, 1, 0}), 0, 1e-12);
     EXPECT_EQ(scene.cloth_velocity.linear, (Vec3d{1, 2, -3}));
     EXPECT_EQ(scene.simulation.thickness, 0.02);
-    EXPECT_EQ(scene.simulation.self_thickness, 0.03);
-    EXPECT_TRUE(scene.simulation.surface_collision);
-    EXPECT_TRUE(scene.simulation.self_collision);
-    EXPECT_TRUE(scene.simulation.untangle);
+    EXPECT_EQ(scene.simulation.newton().self_thickness, 0.03);
+    EXPECT_TRUE(scene.simulation.surfaces_collide());
+    EXPECT_TRUE(scene.simulation.layers_collide());
+    EXPECT_TRUE(scene.simulation.newton().untangle);
     EXPECT_EQ(scene.simulation.thread_count, 3u);
     EXPECT_EQ(std::get<std::vector<std::uint32_t>>(cloth.pins), (std::vector<std::uint32_t>{3, 5}));
     ASSERT_EQ(scene.cloth_attachments.size(), 1u);
@@ -178,7 +178,7 @@ TEST(Scene, NeedsOnlyAModelAndTheSizeOfTheCloth) {
     const Scene scene = parse_scene(R"({"model": {"torus": {}}, "cloth": {"size": [2, 2]}})", "a.json");
     EXPECT_EQ(std::get<TorusModel>(scene.colliders.front().model).major_segments, 60u);
     EXPECT_EQ(scene.cloth.column_count, 100u);
-    EXPECT_EQ(scene.simulation.iteration_count, 10u);
+    EXPECT_EQ(scene.simulation.newton(), NewtonOptions{});
     EXPECT_EQ(refusal(R"({"cloth": {"size": [2, 2]}})"),
               "a.json: the key model is missing, and so is colliders; one of them is needed");
     EXPECT_EQ(refusal(R"({"model": {"torus": {}}})"), "a.json: the key cloth is missing");
@@ -211,28 +211,50 @@ TEST(Scene, LetsSurfacesCollideBesideExactMapsUnlessItSaysSo) {
         return R"({"model": {"box": {}}, "cloth": {"size": [2, 2]})" + keys + "}";
     };
     const SimulationOptions surfaces = parse_scene(with(""), "a.json").simulation;
-    EXPECT_TRUE(surfaces.surface_collision);
-    EXPECT_TRUE(surfaces.self_collision);
+    EXPECT_TRUE(surfaces.surfaces_collide());
+    EXPECT_TRUE(surfaces.layers_collide());
     const SimulationOptions model_only =
-        parse_scene(with(R"(, "self_collision": false)"), "a.json").simulation;
-    EXPECT_TRUE(model_only.surface_collision);
-    EXPECT_FALSE(model_only.self_collision);
-    const SimulationOptions none = parse_scene(with(R"(, "surface_collision": false)"), "a.json").simulation;
-    EXPECT_FALSE(none.surface_collision);
-    EXPECT_FALSE(none.self_collision);
+        parse_scene(with(R"(, "collision": "surfaces")"), "a.json").simulation;
+    EXPECT_TRUE(model_only.surfaces_collide());
+    EXPECT_FALSE(model_only.layers_collide());
+    const SimulationOptions none = parse_scene(with(R"(, "collision": "particles")"), "a.json").simulation;
+    EXPECT_FALSE(none.surfaces_collide());
+    EXPECT_FALSE(none.layers_collide());
     const SimulationOptions distance =
         parse_scene(with(R"(, "map": {"kind": "distance"})"), "a.json").simulation;
-    EXPECT_FALSE(distance.surface_collision);
-    EXPECT_FALSE(distance.self_collision);
-    EXPECT_TRUE(parse_scene(with(R"(, "map": {"kind": "distance"}, "surface_collision": true)"), "a.json")
-                    .simulation.surface_collision);
-    EXPECT_EQ(refusal(with(R"(, "surface_collision": false, "self_collision": true)")),
+    EXPECT_FALSE(distance.surfaces_collide());
+    EXPECT_FALSE(distance.layers_collide());
+    EXPECT_TRUE(parse_scene(with(R"(, "map": {"kind": "distance"}, "collision": "surfaces")"), "a.json")
+                    .simulation.surfaces_collide());
+    EXPECT_FALSE(none.newton().untangle);
+    EXPECT_EQ(
+        refusal(with(R"(, "collision": "particles", "untangle": true)")),
+        R"(a.json: untangle is true; it must be false, or "collision" must be "surfaces" or "surfaces_and_self")");
+    EXPECT_EQ(refusal(with(R"(, "collision": true)")).rfind("a.json: collision is true; it must be ", 0), 0u);
+}
+
+TEST(Scene, WarnsOfTheTwoFormerKeysOfCollisionAndTakesThemAsTheyWereMeant) {
+    const auto read = [](const std::string& keys) {
+        return parse_scene(R"({"model": {"box": {}}, "cloth": {"size": [2, 2]})" + keys + "}", "a.json");
+    };
+    const auto mode_of = [&](const std::string& keys) { return read(keys).simulation.newton().collision; };
+    EXPECT_EQ(mode_of(R"(, "surface_collision": false)"), CollisionMode::Particles);
+    EXPECT_EQ(mode_of(R"(, "surface_collision": true)"), CollisionMode::SurfacesAndSelf);
+    EXPECT_EQ(mode_of(R"(, "self_collision": false)"), CollisionMode::Surfaces);
+    EXPECT_EQ(mode_of(R"(, "map": {"kind": "distance"}, "surface_collision": true, "self_collision": false)"),
+              CollisionMode::Surfaces);
+    EXPECT_EQ(read(R"(, "self_collision": false)").warnings,
+              (std::vector<std::string>{"a.json: the key self_collision is of an earlier version; write "
+                                        "\"collision\": \"surfaces\""}));
+    const auto refusal_of = [&](const std::string& keys) {
+        return refusal(R"({"model": {"box": {}}, "cloth": {"size": [2, 2]})" + keys + "}");
+    };
+    EXPECT_EQ(refusal_of(R"(, "surface_collision": false, "self_collision": true)"),
               R"(a.json: self_collision is true; it must be false, or "surface_collision" must be true)");
-    EXPECT_FALSE(none.untangle);
-    EXPECT_EQ(refusal(with(R"(, "surface_collision": false, "untangle": true)")),
-              R"(a.json: untangle is true; it must be false, or "surface_collision" must be true)");
-    EXPECT_EQ(refusal(with(R"(, "surface_collision": 1)")),
+    EXPECT_EQ(refusal_of(R"(, "surface_collision": 1)"),
               "a.json: surface_collision is 1; it must be true or false");
+    EXPECT_NE(refusal_of(R"(, "surface_collision": true, "collision": "surfaces")").find("leave"),
+              std::string::npos);
 }
 
 TEST(Scene, DividesTheDirectionsOfADistanceMapAsItSays) {
@@ -286,10 +308,10 @@ TEST(Scene, HasTheNewtonSolverAndItsStepUnlessItSaysOtherwise) {
     const auto options_of = [](const std::string& rest) {
         return parse_scene(R"({"model": "a", "cloth": {"size": [1, 1]})" + rest + "}", "a.json").simulation;
     };
-    EXPECT_EQ(options_of("").solver, SolverKind::Newton);
+    EXPECT_EQ(options_of("").kind(), SolverKind::Newton);
     EXPECT_EQ(options_of("").time_step, 1.0 / 60);
-    EXPECT_EQ(options_of(R"(, "solver": "newton")").solver, SolverKind::Newton);
-    EXPECT_EQ(options_of(R"(, "solver": "jakobsen")").solver, SolverKind::Jakobsen);
+    EXPECT_EQ(options_of(R"(, "solver": "newton")").kind(), SolverKind::Newton);
+    EXPECT_EQ(options_of(R"(, "solver": "jakobsen")").kind(), SolverKind::Jakobsen);
     EXPECT_EQ(options_of(R"(, "solver": "jakobsen")").time_step, 1.0 / 240);
     EXPECT_EQ(options_of(R"(, "solver": "jakobsen", "time_step": 0.01)").time_step, 0.01);
 }
@@ -300,7 +322,7 @@ TEST(Scene, OfAnEarlierVersionIsReadWithAWarningForEachKeyThatHasNoEffectAnyMore
             "material": {"structural": 1, "shear": 0.5, "bending": 0.05, "drag": 0.01, "friction": 0.25,
                          "compliance": {"structural": 1e-7, "any": 0}}})",
                                     "a.json");
-    EXPECT_EQ(scene.simulation.solver, SolverKind::Newton);
+    EXPECT_EQ(scene.simulation.kind(), SolverKind::Newton);
     EXPECT_EQ(scene.simulation.friction, 0.25);
     EXPECT_EQ(scene.simulation.time_step, 0.004);
     const std::vector<std::array<std::string, 2>> expected{
@@ -322,7 +344,7 @@ TEST(Scene, OfAnEarlierVersionIsReadWithAWarningForEachKeyThatHasNoEffectAnyMore
         EXPECT_NE(scene.warnings[i].find(remedy), std::string::npos) << scene.warnings[i];
     }
     EXPECT_EQ(parse_scene(R"({"model": "a", "solver": "verlet", "cloth": {"size": [1, 1]}})", "a.json")
-                  .simulation.solver,
+                  .simulation.kind(),
               SolverKind::Newton);
 }
 
@@ -342,14 +364,14 @@ TEST(Scene, TakesTheMaterialOfTheNewtonSolver) {
            "shear_stiffness": 100, "bending_stiffness": 1e-4, "damping": 0.1}})",
                                                   "a.json")
                                           .simulation;
-    EXPECT_EQ(options.solver, SolverKind::Newton);
+    EXPECT_EQ(options.kind(), SolverKind::Newton);
     EXPECT_EQ(options.time_step, 1.0 / 60);
-    EXPECT_EQ(options.newton_step_count, 7u);
-    EXPECT_EQ(options.material.density, 0.3);
-    EXPECT_EQ(options.material.stretch_stiffness, 500);
-    EXPECT_EQ(options.material.shear_stiffness, 100);
-    EXPECT_EQ(options.material.bending_stiffness, 1e-4);
-    EXPECT_EQ(options.material.damping, 0.1);
+    EXPECT_EQ(options.newton().step_count, 7u);
+    EXPECT_EQ(options.newton().material.density, 0.3);
+    EXPECT_EQ(options.newton().material.stretch_stiffness, 500);
+    EXPECT_EQ(options.newton().material.shear_stiffness, 100);
+    EXPECT_EQ(options.newton().material.bending_stiffness, 1e-4);
+    EXPECT_EQ(options.newton().material.damping, 0.1);
 }
 
 TEST(Scene, HasSticksAndParticlesOnlyUnderJakobsensSolver) {
@@ -358,16 +380,16 @@ TEST(Scene, HasSticksAndParticlesOnlyUnderJakobsensSolver) {
     };
     const Scene scene =
         parse_scene(text(R"("mesh": "b")", R"(, "iterations": 4, "material": {"shear": 0.5})"), "a.json");
-    EXPECT_EQ(scene.simulation.solver, SolverKind::Jakobsen);
-    EXPECT_EQ(scene.simulation.iteration_count, 4u);
-    EXPECT_EQ(scene.simulation.stiffness[1], 0.5);
-    EXPECT_FALSE(scene.simulation.surface_collision);
-    EXPECT_FALSE(scene.simulation.self_collision);
+    EXPECT_EQ(scene.simulation.kind(), SolverKind::Jakobsen);
+    EXPECT_EQ(scene.simulation.jakobsen().iteration_count, 4u);
+    EXPECT_EQ(scene.simulation.jakobsen().stiffness[1], 0.5);
+    EXPECT_FALSE(scene.simulation.surfaces_collide());
+    EXPECT_FALSE(scene.simulation.layers_collide());
     const auto refusal_of = [&](const std::string& cloth, const std::string& rest) {
         return refusal(text(cloth, rest));
     };
-    EXPECT_EQ(refusal_of(R"("size": [1, 1])", R"(, "surface_collision": true)"),
-              R"(a.json: surface_collision is true; it must be false, or "solver" must be "newton")");
+    EXPECT_EQ(refusal_of(R"("size": [1, 1])", R"(, "collision": "surfaces")"),
+              R"(a.json: collision is "surfaces"; it must be left out, or "solver" must be "newton")");
     EXPECT_NE(refusal_of(R"("size": [1, 1])", R"(, "self_collision": true)").find("self_collision"),
               std::string::npos);
     EXPECT_NE(
@@ -423,9 +445,8 @@ TEST(Scene, ThrowsTheClothAtItsVelocityButForThePins) {
                                     "a.json");
     const Simulation simulation = make_simulation(scene, build_map(make_mesh(BoxModel{}), scene.map));
     const Deformable& cloth = simulation.deformable();
-    EXPECT_EQ(cloth.positions[0], cloth.previous_positions[0]);
-    for (std::size_t i = 1; i < 4; ++i)
-        EXPECT_NEAR(cloth.positions[i].z - cloth.previous_positions[i].z, 0.03, 1e-6);
+    EXPECT_EQ(cloth.velocities[0], Vec3f());
+    for (std::size_t i = 1; i < 4; ++i) EXPECT_EQ(cloth.velocities[i], Vec3f(0, 0, 3));
 }
 
 TEST(Scene, MakesTheShapesThatItNames) {
@@ -636,7 +657,7 @@ TEST(Scene, NamesTheCacheThatDeformsACollider) {
               "a.json: collider.cache is \"\"; it must be the name of a file or folder");
     EXPECT_EQ(refusal(with_collider(R"({"cache": {"file": ""}})")),
               "a.json: collider.cache.file is \"\"; it must be the name of a file or folder");
-    EXPECT_NE(refusal(R"({"model": "a", "cloth": {"size": [1, 1]}, "surface_collision": false,
+    EXPECT_NE(refusal(R"({"model": "a", "cloth": {"size": [1, 1]}, "collision": "particles",
                           "collider": {"cache": "b"}})")
                   .find("since a collider has a vertex cache"),
               std::string::npos);

@@ -160,10 +160,10 @@ Particles particles_around(const Vec3f& centre, std::size_t count, float half_wi
     Deformable deformable;
     for (std::size_t i = 0; i < count; ++i) {
         deformable.positions.push_back(centre + test::in_cube(random, half_width));
-        deformable.previous_positions.push_back(deformable.positions.back() + test::in_cube(random, 0.05F));
+        deformable.velocities.push_back(test::in_cube(random, 0.05F));
         deformable.inverse_masses.push_back(i % 7 == 3 ? 0.0F : 1.0F);
     }
-    return Particles(deformable);
+    return Particles(deformable, 1);
 }
 
 /// Asks the map about every particle that is not pinned.
@@ -188,11 +188,11 @@ TEST(KnownContacts, PutAParticleAtTheThicknessOverItsPlane) {
     const Collider box{.map = ExactMap::build(make_box({1, 1, 1}))};
     const ColliderNow now(box, box.pose, {.thickness = kWideThickness});
     Deformable deformable{.positions = {{0.1F, 0.2F, 0.51F}},
-                          .previous_positions = {{0.1F, 0.2F, 0.53F}},
+                          .velocities = {{0, 0, -0.02F}},
                           .inverse_masses = {1},
                           .sticks = {},
                           .faces = {}};
-    Particles particles(deformable);
+    Particles particles(deformable, 1);
     const KnownContacts known = known_of(particles, now, 0.1F);
     ParticleList to_ask(1);
     EXPECT_EQ(push_known(known, now, 0, particles.count(), particles, to_ask), 1u);
@@ -204,11 +204,10 @@ TEST(KnownContacts, AskAgainAboutParticlesThatMovedAlongTheSurface) {
     const Collider box{.map = ExactMap::build(make_box({1, 1, 1}))};
     const ColliderNow now(box, box.pose, {.thickness = kWideThickness});
     Deformable deformable{.positions = {{0.1F, 0.2F, 0.51F}, {0.1F, 0.2F, 1.2F}},
-                          .previous_positions = {{0.1F, 0.2F, 0.51F}, {0.1F, 0.2F, 1.2F}},
                           .inverse_masses = {1, 1},
                           .sticks = {},
                           .faces = {}};
-    Particles particles(deformable);
+    Particles particles(deformable, 1);
     const KnownContacts known = known_of(particles, now, 0.1F);
     for (std::size_t i : {0U, 1U}) particles.positions.x[i] += 0.01F;
     ParticleList to_ask(2);

@@ -71,11 +71,7 @@ Vec3d middle(const Simulation& simulation) {
 }
 
 Deformable particle_at(const Vec3f& place) {
-    return {.positions = {place},
-            .previous_positions = {place},
-            .inverse_masses = {1},
-            .sticks = {},
-            .faces = {}};
+    return {.positions = {place}, .inverse_masses = {1}, .sticks = {}, .faces = {}};
 }
 
 /// A small sheet that lies on a box at its thickness.
@@ -169,7 +165,8 @@ TEST_P(Draping, LeavesPinnedParticlesAloneEvenInside) {
 
 TEST_P(Draping, AsksEveryColliderAboutEveryParticleInEveryRelaxation) {
     const Collider box{.map = map_of(make_box({1, 1, 1}))};
-    Simulation simulation(test::sheet_at(2, 0.5, 4), {box, box}, test::jakobsen({.iteration_count = 7}));
+    Simulation simulation(test::sheet_at(2, 0.5, 4), {box, box},
+                          test::jakobsen({.solver = JakobsenOptions{.iteration_count = 7}}));
     simulation.step();
     EXPECT_EQ(simulation.profile().query_count, 16u * 2u * 7u);
     EXPECT_EQ(simulation.profile().contact_count, 0u);

@@ -63,15 +63,11 @@ TEST(Handles, LeadWhatTheyHoldRigidlyAlongTheirPath) {
 
 TEST(Handles, LetGoAtTheirTimeOfWhatGoesOnWithItsVelocity) {
     // Led along x at 2 m/s for half a second and let go on the way: nothing else acts.
-    Deformable particle{.positions = {{0, 0, 0}},
-                        .previous_positions = {{0, 0, 0}},
-                        .inverse_masses = {1},
-                        .sticks = {},
-                        .faces = {}};
+    Deformable particle{.positions = {{0, 0, 0}}, .inverse_masses = {1}, .sticks = {}, .faces = {}};
     particle.handles = {{{0}, {{0, {}}, {1, {{}, {2, 0, 0}}}}, 0.5}};
     SimulationOptions options;
     options.gravity = {};
-    options.air_drag = 0;
+    options.newton().air_drag = 0;
     Simulation simulation(particle, {}, options);
     run(simulation, 0.5);
     EXPECT_NEAR(simulation.positions()[0].x, 1, 1e-5);
@@ -104,7 +100,6 @@ TEST(Handles, PullASheetOverABallWithoutAFaceThatMeetsIt) {
     Deformable sheet = held_sheet(
         {.particles = {}, .keys = {{0, {{}, {0, 0, 0}}}, {1, {{}, {0, -1, -0.6}}}}, .release_time = 1});
     SimulationOptions options;
-    options.surface_collision = options.self_collision = true;
     options.thickness = 0.005;
     Simulation simulation(sheet, {{.map = ExactMap::build(ball), .pose = {{}, {0, 0, 0.7}}}}, options);
     expect_nothing_meets(simulation, {ball}, 75);

@@ -127,11 +127,10 @@ TEST(MeshCloth, TakesItsRestShapeWhenItStartsInAnother) {
     const Deformable cloth = make_cloth(rumpled, {.rest_vertices = dome.vertices});
     EXPECT_EQ(cloth.positions, rumpled.vertices);
     SimulationOptions options = kWeightless;
-    options.air_drag = 5;
-    options.material.bending_stiffness = 1;
-    for (const SolverKind solver : {SolverKind::Newton, SolverKind::Jakobsen}) {
-        options.solver = solver;
-        options.drag = 0.1;
+    options.newton().air_drag = 5;
+    options.newton().material.bending_stiffness = 1;
+    for (const bool is_jakobsen : {false, true}) {
+        if (is_jakobsen) options.solver = JakobsenOptions{.drag = 0.1};
         Simulation simulation(cloth, {}, options);
         for (int i = 0; i < 400; ++i) simulation.step();
         double farthest = 0; // bending sticks are as long as angles say
@@ -205,7 +204,7 @@ TEST(MeshCloth, MayBeAThreadAlone) {
     const Deformable cloth = make_cloth(thread, {.threads = {{0, 1}, {1, 2}, {2, 3}}, .pins = {0}});
     for (std::size_t i = 0; i < 4; ++i)
         EXPECT_NEAR(cloth.inverse_masses[i], (std::array{0.0, 0.75, 0.75, 1.5}[i]), 1e-6);
-    Simulation simulation(cloth, {}, {.air_drag = 5});
+    Simulation simulation(cloth, {}, {.solver = NewtonOptions{.air_drag = 5}});
     for (int i = 0; i < 300; ++i) simulation.step();
     EXPECT_NEAR(simulation.positions()[3].z, -0.3, 0.01); // it hangs
 }
@@ -279,8 +278,7 @@ TEST(MeshCloth, RefusesOptionsOutOfRangeByName) {
 
 TEST(MeshCloth, FallsToTheSameBitsOnEveryRunAndUnderEachInstructionSet) {
     const std::vector<Collider> colliders{{.map = ExactMap::build(make_sphere(0.4, 24, 12))}};
-    for (const SimulationOptions& options :
-         {SimulationOptions{.surface_collision = true, .self_collision = true}, test::jakobsen()}) {
+    for (const SimulationOptions& options : {SimulationOptions{}, test::jakobsen()}) {
         std::set<std::uint64_t> hashes;
         test::under_each_instruction_set([&](std::string_view) {
             const Deformable cloth =
@@ -303,7 +301,9 @@ TEST(Attachments, FollowATurningColliderExactly) {
                            .linear_velocity = {0.3, 0, 0.1},
                            .angular_velocity = {1, 5, 2}};
     const std::vector<std::uint32_t> held{0, 1, 2, 3};
-    for (const SimulationOptions& solver : {SimulationOptions{.surface_collision = true}, test::jakobsen()}) {
+    for (const SimulationOptions& solver :
+         {SimulationOptions{.solver = NewtonOptions{.collision = CollisionMode::Surfaces}},
+          test::jakobsen()}) {
         MeshClothOptions options{.pose = {Rotation{}, {1, 2, 3.8}}};
         for (const std::uint32_t particle : held) options.attachments.push_back({particle, 0});
         const Deformable cloth = make_cloth(test::sheet_mesh(4, 6), options);

@@ -41,7 +41,7 @@ double height_of(const Simulation& simulation) {
 }
 
 std::string refusal(const Deformable& deformable, SimulationOptions options) {
-    options.pressure = 100;
+    options.newton().pressure = 100;
     return refusal_of(ErrorCode::InvalidOptions,
                       [&] { const Simulation simulation(deformable, {}, options); });
 }
@@ -100,16 +100,16 @@ TEST(Pressure, InflatesABallAsFarAsItsMembraneBears) {
     const Deformable ball = make_cloth(make_sphere(kRadius, 40, 20), MeshClothOptions{});
     SimulationOptions options;
     options.gravity = {};
-    options.air_drag = 5;
-    options.pressure = kPressure;
+    options.newton().air_drag = 5;
+    options.newton().pressure = kPressure;
     for (const Deformable& bag : {ball, inside_out(ball)}) {
         Simulation simulation(bag, {}, options);
         for (int i = 0; i < 240; ++i) simulation.step();
         // Where 4 pi R^2 k e^2 - p (4/3) pi (R (1 + e))^3 is least: e = p R (1 + e)^2 / (2 k).
         double strain = 0;
         for (int i = 0; i < 20; ++i)
-            strain =
-                kPressure * kRadius * (1 + strain) * (1 + strain) / (2 * options.material.stretch_stiffness);
+            strain = kPressure * kRadius * (1 + strain) * (1 + strain) /
+                     (2 * options.newton().material.stretch_stiffness);
         EXPECT_NEAR(mean_radius(simulation, {}) / kRadius - 1, strain, 0.05 * strain);
         EXPECT_LT(simulation.largest_speed(), 1e-3);
         EXPECT_LT(length(mean_place(simulation)), 1e-5); // and it stays where it is
@@ -120,10 +120,9 @@ TEST(Pressure, OfTheSameBallIsTheSameFarFromTheOrigin) {
     Deformable ball = make_cloth(make_sphere(0.3, 20, 10), MeshClothOptions{});
     SimulationOptions options;
     options.gravity = {};
-    options.pressure = 200;
+    options.newton().pressure = 200;
     Simulation near(ball, {}, options);
     for (Vec3f& place : ball.positions) place = place + Vec3f{1000, 0, 0};
-    ball.previous_positions = ball.positions;
     ball.rest_positions = near.deformable().rest_positions;
     Simulation far(ball, {}, options);
     for (int i = 0; i < 60; ++i) {
@@ -141,10 +140,9 @@ TEST(Pressure, BearsAPillowThatLiesFlatWithoutIt) {
         cloth.rest_vertices = pillow(0).vertices;
         cloth.pose.translation = {0, 0, 0.1};
         SimulationOptions options;
-        options.surface_collision = options.self_collision = true;
         options.thickness = 0.005;
-        options.air_drag = 2;
-        options.pressure = pressure;
+        options.newton().air_drag = 2;
+        options.newton().pressure = pressure;
         Simulation simulation(make_cloth(pillow(0.02), cloth), {{.map = ExactMap::build(floor)}}, options);
         for (int i = 0; i < 90; ++i) simulation.step();
         EXPECT_EQ(meeting_faces(simulation, {floor}).size(), 0u) << pressure;
@@ -166,7 +164,7 @@ TEST(Pressure, IsInClosedPiecesAlone) {
         make_soft_body(make_solid_box({0.2, 0.2, 0.2}, {2, 2, 2}), {.pose = {{}, {-2, 0, 0}}});
     SimulationOptions options;
     options.gravity = {};
-    options.pressure = 200;
+    options.newton().pressure = 200;
     Simulation simulation(combine(std::vector{ball, sheet, body}), {}, options);
     for (int i = 0; i < 60; ++i) simulation.step();
     for (std::size_t i = 0; i < ball.particle_count(); ++i)

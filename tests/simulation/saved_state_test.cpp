@@ -120,7 +120,8 @@ TEST(SavedState, IsRefusedByAnotherSimulationInASentenceThatSaysWhatDiffers) {
         EXPECT_EQ(simulation.frame(), 0u);
     };
     expect_refused("other options", [](KindOfSimulation& k) { k.options.friction = 0.1; });
-    expect_refused("other options", [](KindOfSimulation& k) { k.options.self_collision = false; });
+    expect_refused("other options",
+                   [](KindOfSimulation& k) { k.options.newton().collision = CollisionMode::Surfaces; });
     expect_refused("another deformable", [](KindOfSimulation& k) { k.deformable.sticks.pop_back(); });
     expect_refused("other initial positions",
                    [](KindOfSimulation& k) { k.deformable.positions[0].z += 0.01F; });
@@ -284,8 +285,9 @@ TEST(SavedState, OfASimulationThatHasNotBegunChangesNoPairs) {
     TriangleMesh box = make_box({1, 1, 0.2}, 4);
     for (Vec3f& v : box.vertices) v.z -= 0.1F;
     const auto falls = [&](bool is_saved) {
-        Simulation simulation(sheet_at(0.003, 1, 5), colliders_of({box}),
-                              {.thickness = 0.01, .surface_collision = true});
+        Simulation simulation(
+            sheet_at(0.003, 1, 5), colliders_of({box}),
+            {.solver = NewtonOptions{.collision = CollisionMode::Surfaces}, .thickness = 0.01});
         if (is_saved) simulation.save_state();
         for (int i = 0; i < 5; ++i) simulation.step();
         return simulation.profile().measured_pair_count;

@@ -24,12 +24,12 @@ using namespace echinus::test;
 
 namespace {
 
-const SimulationOptions kSelf{.thickness = 0.01, .surface_collision = true, .self_collision = true};
+const SimulationOptions kSelf{.thickness = 0.01};
 
 /// Cloth that hardly resists being folded.
 SimulationOptions limp() {
     SimulationOptions options = kSelf;
-    options.material.bending_stiffness = 1e-6;
+    options.newton().material.bending_stiffness = 1e-6;
     return options;
 }
 
@@ -58,7 +58,7 @@ Deformable folded_in_four(std::uint32_t count, float height) {
 
 /// A sheet that begins with folds sharper than it can keep, half circles of two and three edges: stretched by
 /// a half.
-Deformable knotted(const Vec3d& step) {
+Deformable knotted(const Vec3d& velocity) {
     Deformable sheet = make_cloth({.column_count = 40, .row_count = 40, .width = 1.6, .height = 1.6});
     sheet.rest_positions = sheet.positions;
     const float gap = 1.25F * 1.6F / 39;
@@ -66,8 +66,7 @@ Deformable knotted(const Vec3d& step) {
         p = folded(p.x, p.y, p.z, 0.5F * gap, 0, 0.5F * gap);
         p = folded(p.y, p.x, p.z, 0.5F * gap, gap, gap);
     }
-    for (std::size_t i = 0; i < sheet.particle_count(); ++i)
-        sheet.previous_positions[i] = Vec3f(Vec3d(sheet.positions[i]) - step);
+    sheet.velocities.assign(sheet.particle_count(), Vec3f(velocity));
     return sheet;
 }
 
@@ -94,12 +93,10 @@ constexpr double kThin = 0.003;
 /// with its start.
 std::vector<Vec3d> slid_over(Deformable layer, Deformable slider, double speed, double seconds,
                              SimulationOptions options) {
-    options.air_drag = 0;
-    options.thickness = options.self_thickness = kThin;
-    options.surface_collision = options.self_collision = true;
+    options.newton().air_drag = 0;
+    options.thickness = options.newton().self_thickness = kThin;
     for (float& inverse_mass : layer.inverse_masses) inverse_mass = 0;
-    const auto step = static_cast<float>(speed * options.time_step);
-    for (Vec3f& previous : slider.previous_positions) previous.x -= step;
+    slider.velocities.assign(slider.particle_count(), {static_cast<float>(speed), 0, 0});
     const std::size_t first = layer.particle_count();
     const std::vector<Deformable> parts{layer, slider};
     Simulation simulation(combine(parts), {}, options);
@@ -148,7 +145,7 @@ double friction_of(const std::vector<Vec3d>& middles) {
 /// Does it intersect itself where only contact with the model is looked for?
 bool meets_itself_otherwise(const Deformable& deformable, const TriangleMesh& model, int frame_count) {
     SimulationOptions options = limp();
-    options.self_collision = false;
+    options.newton().collision = CollisionMode::Surfaces;
     Simulation simulation(deformable, colliders_of({model}), options);
     for (int i = 0; i < frame_count; ++i) {
         simulation.step();
@@ -161,7 +158,7 @@ bool meets_itself_otherwise(const Deformable& deformable, const TriangleMesh& mo
 
 TEST(SelfCollision, KeepsASheetThatFallsOverABallOffItself) {
     const TriangleMesh ball = make_sphere(0.2, 20, 10);
-    Simulation simulation(sheet_at(0.25, 1.4, 25, {0, 0, -0.04}), colliders_of({ball}), kSelf);
+    Simulation simulation(sheet_at(0.25, 1.4, 25, {0, 0, -2.4}), colliders_of({ball}), kSelf);
     expect_nothing_meets(simulation, {ball}, 50);
 }
 
@@ -177,7 +174,7 @@ TEST(SelfCollision, KeepsABagThatIsThrownFlatOffItself) {
     TriangleMesh mesh = make_sphere(0.3, 20, 10);
     for (Vec3f& v : mesh.vertices) v += Vec3f{0, 0, 0.4F};
     Deformable bag = make_cloth(mesh, {});
-    for (Vec3f& previous : bag.previous_positions) previous += Vec3f{0, 0, 0.4F};
+    bag.velocities.assign(bag.particle_count(), {0, 0, -24});
     Simulation simulation(bag, colliders_of({table}), limp());
     expect_nothing_meets(simulation, {table}, 40);
     EXPECT_TRUE(meets_itself_otherwise(bag, table, 40));
@@ -187,10 +184,10 @@ TEST(SelfCollision, KeepsLooseSheetsThatFallOnEachOtherApart) {
     const TriangleMesh ball = make_sphere(0.3, 20, 10);
     Deformable sheets;
     for (int layer = 0; layer < 3; ++layer) {
-        const Deformable sheet = sheet_at(0.35 + 0.05 * layer, 1, 11, {0, 0, -0.08 * layer});
+        const Deformable sheet = sheet_at(0.35 + 0.05 * layer, 1, 11, {0, 0, -4.8 * layer});
         const auto offset = static_cast<std::uint32_t>(sheets.particle_count());
         for (const Vec3f& p : sheet.positions) sheets.positions.push_back(p);
-        for (const Vec3f& p : sheet.previous_positions) sheets.previous_positions.push_back(p);
+        sheets.velocities.insert(sheets.velocities.end(), sheet.particle_count(), {0, 0, -4.8F * layer});
         for (const auto& [a, b, c] : sheet.faces)
             sheets.faces.push_back({a + offset, b + offset, c + offset});
         for (const auto& [a, b, rest, kind] : sheet.sticks)
@@ -212,7 +209,7 @@ TEST(SelfCollision, KeepsACrumpledSheetOnATurningModelOffItself) {
 TEST(SelfCollision, KeepsAFastSheetOffItself) {
     const TriangleMesh torus = make_torus(0.4, 0.15, 24, 10);
     for (const double speed : {20.0, 50.0}) {
-        Simulation simulation(sheet_at(0.3, 1.2, 20, {0, 0, -speed / 60}), colliders_of({torus}), kSelf);
+        Simulation simulation(sheet_at(0.3, 1.2, 20, {0, 0, -speed}), colliders_of({torus}), kSelf);
         expect_nothing_meets(simulation, {torus}, 25);
     }
 }
@@ -225,9 +222,7 @@ TEST(SelfCollision, KeepsABallThatTwoPlatesCrushPoleFirstOffItself) {
     colliders[1].linear_velocity = {0, 0, -1};
     const Deformable ball = make_cloth(make_sphere(0.2, 24, 14), {.pose = {{}, {0, 0, 0.255}}});
     for (const double friction : {0.0, 0.5}) {
-        Simulation simulation(
-            ball, colliders,
-            {.thickness = 0.004, .friction = friction, .surface_collision = true, .self_collision = true});
+        Simulation simulation(ball, colliders, {.thickness = 0.004, .friction = friction});
         expect_nothing_meets(simulation, plates, 22);
         EXPECT_EQ(simulation.profile().squeezed_count, 0u);
     }
@@ -244,14 +239,13 @@ TEST(SelfCollision, KeepsAThreadOffItselfAndASheet) {
         both.inverse_masses.push_back(1);
         if (i > 0) both.sticks.push_back({offset + i - 1, offset + i, 0.05F, StickKind::Structural});
     }
-    both.previous_positions = both.positions;
     Simulation simulation(both, {}, kSelf);
     expect_nothing_meets(simulation, {}, 62);
 }
 
 TEST(SelfCollision, LeavesNoKnotInASheetThatHitsABallFast) {
     const TriangleMesh ball = make_sphere(0.2, 24, 12);
-    Simulation simulation(sheet_at(0.3, 1.2, 19, {0, 0, -40.0 / 60}), colliders_of({ball}), kSelf);
+    Simulation simulation(sheet_at(0.3, 1.2, 19, {0, 0, -40}), colliders_of({ball}), kSelf);
     expect_nothing_meets(simulation, {ball}, 6);
     const std::uint64_t in_the_hit = simulation.profile().truncated_count;
     expect_nothing_meets(simulation, {ball}, 6);
@@ -260,8 +254,7 @@ TEST(SelfCollision, LeavesNoKnotInASheetThatHitsABallFast) {
 }
 
 TEST(SelfCollision, OpensTheKnotOfASheetThatWasFoldedInFourTooSharply) {
-    Simulation simulation(knotted({}), {},
-                          {.gravity = {}, .surface_collision = true, .self_collision = true});
+    Simulation simulation(knotted({}), {}, {.gravity = {}});
     for (int frame = 0; frame < 40; ++frame) {
         simulation.step();
         ASSERT_TRUE(meeting_faces(simulation, {}).empty()) << frame;
@@ -293,9 +286,9 @@ TEST(SelfCollision, BrakesWhatSlidesOverALayerAsFrictionSays) {
 TEST(SelfCollision, LeavesTheFastFlightOfASheetAsItIs) {
     const auto flown = [](bool self) {
         SimulationOptions options = kSelf;
-        options.self_collision = self;
-        Simulation simulation(sheet_at(30, 1, 20, {0, 0, -100.0 / 60}),
-                              colliders_of({make_sphere(0.2, 24, 12)}), options);
+        options.newton().collision = self ? CollisionMode::SurfacesAndSelf : CollisionMode::Surfaces;
+        Simulation simulation(sheet_at(30, 1, 20, {0, 0, -100}), colliders_of({make_sphere(0.2, 24, 12)}),
+                              options);
         for (int i = 0; i < 15; ++i) simulation.step();
         return simulation;
     };
@@ -318,9 +311,9 @@ TEST(SelfCollision, LetsASheetFallOnBesideABallThatItHasLeft) {
     for (const double speed : {3.0, 8.0, 20.0}) {
         SimulationOptions options = kSelf;
         options.gravity = {};
-        options.air_drag = 0;
+        options.newton().air_drag = 0;
         options.thickness = 0.004;
-        Simulation simulation(sheet_at(-0.11, 0.5, 31, {0, 0, -speed / 60}), ball, options);
+        Simulation simulation(sheet_at(-0.11, 0.5, 31, {0, 0, -speed}), ball, options);
         for (int i = 0; i < 15; ++i) simulation.step();
         EXPECT_EQ(simulation.profile().truncated_count, 0u) << speed;
         for (const Vec3f& p : simulation.positions()) ASSERT_NEAR(p.z, -0.11 - speed / 4, 1e-4) << speed;
@@ -328,8 +321,7 @@ TEST(SelfCollision, LetsASheetFallOnBesideABallThatItHasLeft) {
 }
 
 TEST(SelfCollision, HoldsLayersOfWhatFliesBackFromEachOtherAndNotInTheAir) {
-    const SimulationOptions options{
-        .gravity = {}, .air_drag = 0, .surface_collision = true, .self_collision = true};
+    const SimulationOptions options{.solver = NewtonOptions{.air_drag = 0}, .gravity = {}};
     for (const bool has_model : {false, true}) {
         // One that goes by far away, or none.
         std::vector<Collider> colliders;
@@ -338,13 +330,13 @@ TEST(SelfCollision, HoldsLayersOfWhatFliesBackFromEachOtherAndNotInTheAir) {
             colliders[0].pose.translation = {0, 0, 40};
             colliders[0].linear_velocity = {0, 3, 0};
         }
-        const Vec3d step{10.0 / 60, 0, -20.0 / 60};
-        const Deformable sheet = knotted(step);
+        const Vec3d velocity{10, 0, -20};
+        const Deformable sheet = knotted(velocity);
         Simulation simulation(sheet, colliders, options);
         for (int i = 0; i < 6; ++i) simulation.step();
         EXPECT_EQ(simulation.profile().squeezed_count, 0u);
         const Vec3d way = mean_of(simulation.positions()) - mean_of(sheet.positions);
-        EXPECT_NEAR(length(way - step * 6), 0, 0.02) << way.x << ' ' << way.y << ' ' << way.z;
+        EXPECT_NEAR(length(way - velocity * 0.1), 0, 0.02) << way.x << ' ' << way.y << ' ' << way.z;
         EXPECT_TRUE(meeting_faces(simulation, {}).empty());
     }
 }
@@ -361,10 +353,7 @@ TEST(SelfCollision, KeepsTheMomentumOfASheetThatUnfoldsInTheAir) {
         sheet.rest_positions = sheet.positions;
         Random random(1);
         for (Vec3f& p : sheet.positions) p = p * 0.6F + in_cube(random, 0.003F);
-        sheet.previous_positions = sheet.positions;
-        Simulation simulation(
-            sheet, colliders,
-            {.gravity = {}, .air_drag = 0, .surface_collision = true, .self_collision = true});
+        Simulation simulation(sheet, colliders, {.solver = NewtonOptions{.air_drag = 0}, .gravity = {}});
         for (int i = 0; i < 40; ++i) simulation.step();
         EXPECT_EQ(simulation.profile().squeezed_count, 0u);
         const Vec3d before = mean_of(simulation.positions());
@@ -376,8 +365,7 @@ TEST(SelfCollision, KeepsTheMomentumOfASheetThatUnfoldsInTheAir) {
 
 TEST(SelfCollision, NamesTheDistanceFromTheOriginWhereFloatsMakeTheFacesOfTheStartMeet) {
     Deformable sheet = folded_in_four(17, 0);
-    for (std::vector<Vec3f>* places : {&sheet.positions, &sheet.previous_positions})
-        for (Vec3f& v : *places) v.x += 2e6F;
+    for (Vec3f& v : sheet.positions) v.x += 2e6F;
     expect_words(refusal_of(ErrorCode::InvalidOptions, [&] { Simulation(sheet, {}, kSelf); }),
                  "from the origin, where floats separate its layers only from a distance of");
 }

@@ -23,7 +23,7 @@ namespace {
 constexpr double kBodyThickness = 0.004;
 
 SimulationOptions with_surfaces() {
-    return {.thickness = kBodyThickness, .surface_collision = true, .self_collision = true};
+    return {.thickness = kBodyThickness};
 }
 
 Deformable cube(std::uint32_t segments, const SoftBodyOptions& options) {
@@ -147,7 +147,7 @@ TEST(SoftBody, NeedsFittingTetrahedra) {
 TEST(SoftBody, ThrownOutOfAllBoundsDivergesWhateverItCollidesWith) {
     for (const float speed : {1e7F, 1e20F, 3e37F}) {
         Deformable body = cube(3, {.pose = {{}, {0, 0, 0.4}}});
-        for (Vec3f& before : body.previous_positions) before.x -= speed;
+        body.velocities.assign(body.particle_count(), {speed, 0, 0});
         Simulation simulation(body, test::colliders_of({make_sphere(0.15, 24, 12)}), with_surfaces());
         test::expect_error(ErrorCode::Diverged, "in frame 1", [&] { simulation.step(); });
     }
@@ -159,7 +159,7 @@ TEST(SoftBody, IsNotMovedByItsOwnThickness) {
         make_soft_body(make_solid_box({0.4, 0.4, 0.004}, {20, 20, 1}), {.young_modulus = 1e4});
     SimulationOptions options = with_surfaces();
     options.gravity = {};
-    options.thickness = options.self_thickness = 0.02;
+    options.thickness = options.newton().self_thickness = 0.02;
     Simulation simulation(sheet, {}, options);
     for (int frame = 0; frame < 5; ++frame) simulation.step();
     for (std::size_t i = 0; i < sheet.particle_count(); ++i)
@@ -218,8 +218,7 @@ TEST(SoftBody, UnderALightSheetIsPressedByAPlateThatMeetsNeither) {
                                                                              .poisson_ratio = 0.3,
                                                                              .damping = 0.03,
                                                                              .pose = {{}, {0, 0, 0.11}}})};
-        Simulation simulation(combine(parts), colliders,
-                              {.thickness = 0.004, .surface_collision = true, .self_collision = true});
+        Simulation simulation(combine(parts), colliders, {.thickness = 0.004});
         test::expect_nothing_meets(simulation, plates, static_cast<std::uint32_t>(13 / speed));
         EXPECT_EQ(simulation.profile().lost_count, 0u);
         EXPECT_EQ(simulation.profile().squeezed_count, 0u);
@@ -246,9 +245,7 @@ TEST(SoftBody, UnderALightSheetLosesNothingToAPlateThatComesDownFast) {
                 {.young_modulus = 5e3, .poisson_ratio = 0.3, .damping = 0.01, .pose = {{}, {0, 0, 0.145}}}),
             sheet};
         colliders[1].pose.translation = {0, 0, 0.285 + gap};
-        Simulation simulation(
-            combine(parts), colliders,
-            {.thickness = 0.003, .friction = 0.3, .surface_collision = true, .self_collision = true});
+        Simulation simulation(combine(parts), colliders, {.thickness = 0.003, .friction = 0.3});
         test::expect_nothing_meets(simulation, plates, static_cast<std::uint32_t>((0.12 + gap) * 20));
         EXPECT_EQ(simulation.profile().lost_count, 0u) << gap;
         EXPECT_EQ(simulation.profile().squeezed_count, 0u) << gap;
@@ -299,7 +296,7 @@ TEST(SoftBody, OnAWallThatSwaysOrTurnsOverAFloorMeetsNothingThatFallsOnIt) {
         colliders[1].pose.translation = {double{left} - 0.056, 0, 0.3};
         SimulationOptions options = with_surfaces();
         options.thickness = 0.003;
-        options.air_drag = 0;
+        options.newton().air_drag = 0;
         options.friction = 0.5;
         Simulation simulation(combine(parts), colliders, options);
         for (int frame = 0; frame < 28; ++frame) {
@@ -322,7 +319,7 @@ TEST(SoftBody, IsNotTakenAlongByAModelThatFallsAwayFromIt) {
         SimulationOptions options = with_surfaces();
         options.gravity = {};
         options.friction = 0;
-        options.air_drag = 0;
+        options.newton().air_drag = 0;
         const Deformable body = cube(4, {.young_modulus = 1e4, .pose = {{}, {0, 0, 0.154}}});
         Simulation simulation(body, colliders, options);
         for (int frame = 0; frame < 3; ++frame) simulation.step();
@@ -380,7 +377,8 @@ inline Settled settle(const Beam& beam, const Vec3d& down, std::uint32_t segment
                                                   .poisson_ratio = beam.poisson_ratio,
                                                   .pins = vertices_at_x(mesh, 0)});
     const double speed = std::sqrt(young / kDensity);
-    const SimulationOptions options{.gravity = down * kGravity, .air_drag = 1.6 * pace * speed};
+    const SimulationOptions options{.solver = NewtonOptions{.air_drag = 1.6 * pace * speed},
+                                    .gravity = down * kGravity};
     Simulation simulation(body, {}, options);
     while (simulation.frame() * options.time_step * pace * speed < 30) simulation.step();
     Settled settled{0, expected * beam.strain, 0, body.tetrahedra.size()};
@@ -429,10 +427,11 @@ Simulation block_on_slope(const Rotation& tilt) {
                         .damping = 0.02,
                         .pose = {tilt, tilt.apply({0, 0, 0.5 + 0.05 + kBodyThickness})}});
     const Collider slope{.map = ExactMap::build(make_box({3, 1, 1})), .pose = {tilt, {}}};
-    return {
-        block,
-        {slope},
-        {.air_drag = 0, .thickness = kBodyThickness, .friction = kSlopeFriction, .surface_collision = true}};
+    return {block,
+            {slope},
+            {.solver = NewtonOptions{.air_drag = 0, .collision = CollisionMode::Surfaces},
+             .thickness = kBodyThickness,
+             .friction = kSlopeFriction}};
 }
 
 /// Of its middle, in the frame of the slope.
@@ -542,7 +541,7 @@ TEST(SoftBodyPhysics, GainsNoEnergyWhereABallCrushesIt) {
                        {.young_modulus = 5e3, .pose = {Rotation::about({1, 1, 0}, 0.5), {0, 0, 0.6}}});
     SimulationOptions options = with_surfaces();
     options.friction = 0;
-    options.newton_step_count = 20;
+    options.newton().step_count = 20;
     Simulation simulation(jelly, test::colliders_of({make_sphere(0.15, 24, 12)}), options);
     const auto energy = [&] {
         double sum = test::energy(simulation);
@@ -563,7 +562,7 @@ TEST(SoftBodyPhysics, FallsAsFastFarFromTheOriginAsNearIt) {
     for (const float height : {0.0F, 2.0F, 30.0F, 1000.0F}) {
         const Deformable body =
             make_soft_body(make_solid_box({0.3, 0.3, 0.3}, {2, 2, 2}), {.pose = {{}, {0, 0, height}}});
-        Simulation simulation(body, {}, {.air_drag = 0});
+        Simulation simulation(body, {}, {.solver = NewtonOptions{.air_drag = 0}});
         for (int frame = 0; frame < 15; ++frame) simulation.step();
         double fallen = 0;
         for (std::size_t i = 0; i < body.particle_count(); ++i)

@@ -21,7 +21,6 @@ const TriangleMesh kBall = make_sphere(0.2, 30, 15);
 
 SimulationOptions with_both_contacts() {
     SimulationOptions options;
-    options.surface_collision = options.self_collision = true;
     options.thickness = 0.005;
     return options;
 }

@@ -41,11 +41,15 @@ TEST(SimulationSetUp, IsAcceptedWhenSound) {
 TEST(SimulationSetUp, NamesTheOptionOutOfRange) {
     expect_words(refusal_of_option([](auto& o) { o.time_step = 0; }), "time_step");
     expect_words(refusal_of_option([](auto& o) { o.time_step = kNaNOption; }), "time_step");
-    expect_words(refusal_of_option([](auto& o) { o.iteration_count = 0; }), "iteration_count");
-    expect_words(refusal_of_option([](auto& o) { o.drag = 1.01; }), "drag");
+    expect_words(refusal_of_option([](auto& o) { o.solver = JakobsenOptions{.iteration_count = 0}; }),
+                 "iteration_count");
+    expect_words(refusal_of_option([](auto& o) { o.solver = JakobsenOptions{.drag = 1.01}; }), "drag");
     expect_words(refusal_of_option([](auto& o) { o.thickness = -0.1; }), "thickness");
     expect_words(refusal_of_option([](auto& o) { o.friction = kNaNOption; }), "friction");
-    expect_words(refusal_of_option([](auto& o) { o.stiffness[1] = 2; }), "stiffness");
+    expect_words(refusal_of_option([](auto& o) {
+                     o.solver = JakobsenOptions{.stiffness = {1, 2, 1}};
+                 }),
+                 "stiffness");
     expect_words(refusal_of_option([](auto& o) { o.gravity.y = kNaNOption; }), "gravity");
     expect_words(refusal_of_option([](auto& o) { o.bound = -1; }), "bound");
     expect_words(refusal_of_option([](auto& o) { o.rest.distance = -1; }), "rest.distance");
@@ -127,8 +131,8 @@ TEST(SimulationSetUp, RefusesTheExactMapOfAnOpenMeshUnlessItIsAllowed) {
     const std::vector<Collider> colliders{{.map = ExactMap::build(open)}};
     expect_error(ErrorCode::InvalidOptions,
                  "collider 0 has the exact map of an open mesh, with 3 border edges",
-                 [&] { Simulation(make_cloth({}), colliders, {}); });
-    EXPECT_NO_THROW(Simulation(make_cloth({}), colliders, {.allow_open_colliders = true}));
+                 [&] { Simulation(make_cloth({}), colliders, test::jakobsen()); });
+    EXPECT_NO_THROW(Simulation(make_cloth({}), colliders, test::jakobsen({.allow_open_colliders = true})));
     EXPECT_NO_THROW(Simulation(make_cloth({}), {{.map = DistanceMap::build(open)}}, {}));
 }
 
@@ -147,7 +151,10 @@ TEST(SimulationSetUp, KeepsHalfTheSpacingOfTheParticlesAwayUnlessToldOtherwise) 
 
 TEST(SimulationSetUp, NamesTheParticleStickOrFaceAtFault) {
     expect_words(refusal([](Deformable& d, auto&) { d.positions[4].x = float(kNaNOption); }), "particle 4");
-    expect_words(refusal([](Deformable& d, auto&) { d.previous_positions[5].z = float(1 / 0.0F); }),
+    expect_words(refusal([](Deformable& d, auto&) {
+                     d.velocities.resize(d.particle_count());
+                     d.velocities[5].z = std::numeric_limits<float>::infinity();
+                 }),
                  "particle 5");
     expect_words(refusal([](Deformable& d, auto&) { d.inverse_masses[6] = -1; }), "particle 6");
     expect_words(refusal([](Deformable& d, auto&) { d.sticks[2].b = 9; }), "stick 2");
@@ -170,19 +177,18 @@ TEST(SimulationSetUp, RefusesARestShapeThatIsNotOfItsParticles) {
     expect_words(with_rest({{}, {}, {}, {infinity, 0, 0}, {}, {}, {}, {}, {}}), "particle 3");
 }
 
-TEST(SimulationSetUp, RefusesSurfaceOptionsThatContradictEachOther) {
-    const auto refuses = [](const SimulationOptions& options, const std::string& words) {
-        expect_error(ErrorCode::InvalidOptions, words, [&] { Simulation(sheet_at(1, 1, 5), {}, options); });
+TEST(SimulationSetUp, RefusesOptionsOfSurfacesThatMeanNothing) {
+    const auto refuses = [](const NewtonOptions& newton, const std::string& words) {
+        expect_words(refusal_of_option([&](auto& o) { o.solver = newton; }), words);
     };
-    refuses({.self_collision = true}, "self_collision needs surface_collision");
-    refuses({.keep_free = false, .surface_collision = true}, "keep_free is false");
-    refuses({.surface_collision = true, .self_thickness = -1}, "self_thickness");
-    refuses({.surface_collision = true, .self_thickness = kNaNOption}, "self_thickness");
+    refuses({.collision = static_cast<CollisionMode>(3)}, "collision is none of the modes");
+    refuses({.self_thickness = -1}, "self_thickness");
+    refuses({.self_thickness = kNaNOption}, "self_thickness");
 }
 
 TEST(SimulationSetUp, NamesTheFacesWithWhichADeformableBeginsIntersecting) {
     const std::vector<Collider> box{{.map = ExactMap::build(make_box({1, 1, 1})), .pose = {{}, {0, 0, 2}}}};
-    const SimulationOptions surfaces{.surface_collision = true};
+    const SimulationOptions surfaces{.solver = NewtonOptions{.collision = CollisionMode::Surfaces}};
     const Deformable wide = sheet_at(2.2, 2, 4);
     TriangleMesh raised = make_box({1, 1, 1});
     for (Vec3f& v : raised.vertices) v.z += 2;
@@ -195,7 +201,7 @@ TEST(SimulationSetUp, NamesTheFacesWithWhichADeformableBeginsIntersecting) {
     expect_error(ErrorCode::InvalidOptions, "25 particles begin inside collider 0; the first is particle 0",
                  [&] { Simulation(sheet_at(2.2, 0.5, 5), box, surfaces); });
     Deformable thread;
-    thread.positions = thread.previous_positions = {{0, 0, 2.2F}, {0, 0, 3}};
+    thread.positions = {{0, 0, 2.2F}, {0, 0, 3}};
     thread.inverse_masses = {1, 1};
     thread.sticks = {{0, 1, 0.8F, StickKind::Structural}};
     expect_error(ErrorCode::InvalidOptions, "the edge from particle 0 to 1 of the deformable and face ",
@@ -206,7 +212,7 @@ TEST(SimulationSetUp, NamesTheFacesWithWhichADeformableBeginsIntersecting) {
 
 TEST(SimulationSetUp, RefusesADeformableThatLiesOnAModelAsNearAsTheLatticeOfItsMapTells) {
     const std::vector<Collider> table{{.map = ExactMap::build(make_box({4, 4, 1})), .name = "the table"}};
-    const SimulationOptions surfaces{.surface_collision = true};
+    const SimulationOptions surfaces{.solver = NewtonOptions{.collision = CollisionMode::Surfaces}};
     for (const double height : {0.5, 0.50001, 0.4999998, 0.499999})
         expect_error(ErrorCode::InvalidOptions,
                      "begins touching the table with 128 faces: face 0, face 1, face 2, ...; move",
@@ -220,10 +226,9 @@ TEST(SimulationSetUp, RefusesLayersThatFloatsDoNotTellApartSoFarFromTheOrigin) {
         {.map = ExactMap::build(make_box({1, 1, 1})), .pose = {{}, {20000, 0, 0}}}};
     Deformable sheet = sheet_at(0.7, 1, 20);
     for (Vec3f& p : sheet.positions) p.x += 20000;
-    sheet.previous_positions = sheet.positions;
-    SimulationOptions options{.surface_collision = true};
+    SimulationOptions options{.solver = NewtonOptions{.collision = CollisionMode::Surfaces}};
     EXPECT_NO_THROW(Simulation(sheet, box, options));
-    options.self_collision = true;
+    options.newton().collision = CollisionMode::SurfacesAndSelf;
     expect_error(ErrorCode::InvalidOptions, "move the scene nearer to the origin",
                  [&] { Simulation(sheet, box, options); });
 }
@@ -234,17 +239,17 @@ TEST(SimulationSetUp, NamesTheFacesOfADeformableThatBeginIntersecting) {
         make_cloth({.column_count = 2, .row_count = 2, .pose = {Rotation::about({1, 0.1, 0}, 1.5), {}}});
     const auto offset = static_cast<std::uint32_t>(sheet.particle_count());
     for (const Vec3f& p : upright.positions) sheet.positions.push_back(p);
-    sheet.previous_positions = sheet.positions;
     sheet.inverse_masses.resize(sheet.particle_count(), 1);
     for (const auto& [a, b, c] : upright.faces) sheet.faces.push_back({a + offset, b + offset, c + offset});
     expect_error(ErrorCode::InvalidOptions, "begins intersecting itself in ",
-                 [&] { Simulation(sheet, {}, {.surface_collision = true, .self_collision = true}); });
-    EXPECT_NO_THROW(Simulation(sheet, {}, {.surface_collision = true}));
+                 [&] { Simulation(sheet, {}, {}); });
+    EXPECT_NO_THROW(Simulation(sheet, {}, {.solver = NewtonOptions{.collision = CollisionMode::Surfaces}}));
 }
 
 TEST(SimulationSetUp, AcceptsOpenMeshesWithSurfaceCollisionAndNoInsideOfThem) {
     TriangleMesh open = make_box({1, 1, 1});
     open.faces.pop_back();
     const std::vector<Collider> colliders{{.map = ExactMap::build(open)}};
-    EXPECT_NO_THROW(Simulation(sheet_at(0, 0.5, 5), colliders, {.surface_collision = true}));
+    EXPECT_NO_THROW(Simulation(sheet_at(0, 0.5, 5), colliders,
+                               {.solver = NewtonOptions{.collision = CollisionMode::Surfaces}}));
 }

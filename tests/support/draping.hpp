@@ -9,20 +9,19 @@
 namespace echinus::test {
 
 /// A level square cloth with its middle above the origin.
-/// @param step  each particle's displacement in the previous frame
-inline Deformable sheet_at(double height, double width, std::uint32_t count, const Vec3d& step = {}) {
+inline Deformable sheet_at(double height, double width, std::uint32_t count, const Vec3d& velocity = {}) {
     Deformable sheet = make_cloth({.column_count = count,
                                    .row_count = count,
                                    .width = width,
                                    .height = width,
                                    .pose = {Rotation{}, {0, 0, height}}});
-    for (Vec3f& previous : sheet.previous_positions) previous = Vec3f(Vec3d(previous) - step);
+    if (velocity != Vec3d{}) sheet.velocities.assign(sheet.particle_count(), Vec3f(velocity));
     return sheet;
 }
 
 /// The paper's solver, in its usual steps unless told otherwise.
 inline SimulationOptions jakobsen(SimulationOptions options = {}) {
-    options.solver = SolverKind::Jakobsen;
+    if (options.kind() != SolverKind::Jakobsen) options.solver = JakobsenOptions{};
     if (options.time_step == SimulationOptions{}.time_step) options.time_step = 1.0 / 240;
     return options;
 }

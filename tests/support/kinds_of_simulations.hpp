@@ -62,20 +62,22 @@ inline VertexCache breathing_cache() {
 }
 
 inline SimulationOptions surfaces_for_kinds(bool self) {
-    return {.thickness = 0.01, .surface_collision = true, .self_collision = self};
+    return {.solver =
+                NewtonOptions{.collision = self ? CollisionMode::SurfacesAndSelf : CollisionMode::Surfaces},
+            .thickness = 0.01};
 }
 
 /// Particles by the paper's method beside maps of all kinds, which move, in wind; one is attached, one begins
 /// inside, and one collider is far away at first.
 inline KindOfSimulation jakobsens_particles() {
     KindOfSimulation kind{.name = "particles by Jakobsen's method",
-                          .deformable = sheet_at(0.3, 1, 21, {0, 0, 0.005}),
+                          .deformable = sheet_at(0.3, 1, 21, {0, 0, 1.2}),
                           .colliders = {},
                           .options = jakobsen({.thickness = 0.01}),
                           .steer = [](Simulation& s) {
                               s.blow({0.5, 0, 0}, 1);
                           }};
-    kind.deformable.positions[7] = kind.deformable.previous_positions[7] = {0, 0, -0.1F};
+    kind.deformable.positions[7] = {0, 0, -0.1F};
     kind.deformable.inverse_masses[0] = 0;
     kind.deformable.attachments.push_back({0, 0});
     kind.colliders = {{.map = ExactMap::build(make_torus(0.3, 0.15, 24, 12)), .angular_velocity = {0, 3, 0}},
@@ -91,7 +93,7 @@ inline KindOfSimulation jakobsens_particles() {
 inline KindOfSimulation continuous_materials_particles() {
     KindOfSimulation kind = jakobsens_particles();
     kind.name = "particles of a continuous material";
-    kind.options = {.thickness = 0.01};
+    kind.options = {.solver = NewtonOptions{.collision = CollisionMode::Particles}, .thickness = 0.01};
     return kind;
 }
 
@@ -101,7 +103,7 @@ inline KindOfSimulation sheet_among_moving_colliders() {
     for (int i = 0; i < 8; ++i)
         keys.push_back({0.1 * i, {Rotation::about({0, 1, 1}, 0.5 * i), {0.4, 0.2 * (i % 2), -0.2}}});
     KindOfSimulation kind{.name = "a sheet among colliders that move",
-                          .deformable = sheet_at(0.25, 1.2, 19, {0, 0, 0.04}),
+                          .deformable = sheet_at(0.25, 1.2, 19, {0, 0, 2.4}),
                           .colliders = colliders_of({make_sphere(0.15, 20, 10), make_box({0.2, 0.2, 0.2}, 2),
                                                      make_box({0.1, 0.1, 0.1})}),
                           .options = surfaces_for_kinds(true),
@@ -153,14 +155,12 @@ inline KindOfSimulation sheet_on_deforming_balls() {
 inline KindOfSimulation sheet_that_passes_through() {
     std::vector<Deformable> sheets(2, sheet_at(0.2, 1, 13));
     for (Vec3f& p : sheets[0].positions) p = p + Vec3f(0, 0, 0.1F);
-    sheets[0].previous_positions = sheets[0].positions;
     KindOfSimulation kind{.name = "a sheet that a model lets through",
                           .deformable = combine(std::vector{sheets[0], passing_through(1, sheets[1])}),
                           .colliders = colliders_of({make_box({3, 3, 0.1}), make_box({0.5, 0.5, 0.2}, 4)}),
                           .options = surfaces_for_kinds(true)};
     const Vec3f far(300, 200, -400);
     for (Vec3f& p : kind.deformable.positions) p = p + far;
-    kind.deformable.previous_positions = kind.deformable.positions;
     for (Collider& collider : kind.colliders) collider.pose.translation = Vec3d(far);
     kind.colliders[0].pose.translation.z -= 0.4;
     return kind;

@@ -47,14 +47,14 @@ inline std::vector<Simulation> simulations_to_attack() {
     all.emplace_back(combine(std::vector{sheet, body}),
                      std::vector<Collider>{{.map = ExactMap::build(ball)},
                                            {.map = ExactMap::build(ball), .pose = {{}, {0.4, 0, 0}}}},
-                     SimulationOptions{.thickness = 0.01, .surface_collision = true, .self_collision = true});
+                     SimulationOptions{.thickness = 0.01});
     all[0].set_collider_cache(0, growing_cache(ball));
     all[0].set_collider_keyframes(1, {{0, {{}, {0.4, 0, 0}}}, {0.1, {{}, {0.3, 0, 0}}}});
     all.emplace_back(
         sheet,
         std::vector<Collider>{{.map = ExactMap::build(ball)},
                               {.map = DistanceMap::build(ball), .pose = {{}, {0.4, 0, 0}}}},
-        SimulationOptions{.solver = SolverKind::Jakobsen, .time_step = 1.0 / 240, .thickness = 0.01});
+        SimulationOptions{.solver = JakobsenOptions{}, .time_step = 1.0 / 240, .thickness = 0.01});
     return all;
 }
 

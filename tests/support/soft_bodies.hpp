@@ -103,12 +103,11 @@ inline double elastic_energy(const ElasticTetrahedron& tetrahedron, std::span<co
 /// Of motion and of elasticity.
 inline double energy(const Simulation& simulation) {
     const Deformable& body = simulation.deformable();
-    const double step = simulation.options().time_step;
     double sum = 0;
     for (std::size_t i = 0; i < body.particle_count(); ++i) {
         if (body.inverse_masses[i] == 0) continue;
-        const Vec3d way = Vec3d(body.positions[i]) - Vec3d(body.previous_positions[i]);
-        sum += dot(way, way) / (step * step * double{body.inverse_masses[i]}) / 2;
+        const Vec3d velocity(body.velocities[i]);
+        sum += dot(velocity, velocity) / double{body.inverse_masses[i]} / 2;
     }
     for (const ElasticTetrahedron& tetrahedron : body.tetrahedra)
         sum += elastic_energy(tetrahedron, body.positions);

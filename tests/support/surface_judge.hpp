@@ -45,7 +45,7 @@ inline std::vector<FacePair> meeting_faces(const Simulation& simulation,
     };
     for (std::size_t i = 0; i < models.size(); ++i)
         add(intersecting_pairs(surface, placed(models[i], simulation.colliders()[i])));
-    if (simulation.options().self_collision) add(self_intersecting_pairs(surface));
+    if (simulation.options().layers_collide()) add(self_intersecting_pairs(surface));
     return all;
 }
 

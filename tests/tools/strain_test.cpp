@@ -59,8 +59,7 @@ TEST(Strain, OfAThreadIsThatOfItsPieces) {
 }
 
 TEST(Strain, OfNothingIsNone) {
-    const Deformable particle{
-        .positions = {{}}, .previous_positions = {{}}, .inverse_masses = {1}, .sticks = {}, .faces = {}};
+    const Deformable particle{.positions = {{}}, .inverse_masses = {1}, .sticks = {}, .faces = {}};
     EXPECT_FALSE(material_strain(particle));
     EXPECT_FALSE(edge_strain(particle));
 }

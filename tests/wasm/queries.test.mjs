@@ -174,7 +174,7 @@ describe('A simulation', () => {
         assert.ok(rootMeanSquare > 0 && largest > rootMeanSquare);
     });
     test('is moved by a hand, by wind, and by a collider that deforms', () => {
-        const scene = echinus.parseScene({ ...falling, gravity: [0, 0, 0], surface_collision: true });
+        const scene = echinus.parseScene({ ...falling, gravity: [0, 0, 0] });
         const model = scene.makeModel();
         const simulation = scene.makeSimulation(scene.buildMap(model));
         const height = (i) => simulation.positions[3 * i + 2];

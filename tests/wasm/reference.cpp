@@ -134,7 +134,7 @@ const char* const kSimulations[] = {
         "mesh": {"sphere": {"radius": 0.9, "segments": [40, 20]}}, "position": [0, 0, 1.2], "attachments": [3]}})",
     R"({"cloth": {"size": null, "particles": null, "pins": null,
         "mesh": {"torus": {"major": 1, "minor": 0.3, "segments": [30, 12]}}, "position": [0.2, 0, 0.8]}})",
-    R"({"self_collision": false, "collider": {"angular_velocity": [0, 0, 90]}})",
+    R"({"collision": "surfaces", "collider": {"angular_velocity": [0, 0, 90]}})",
 };
 const char* const kScene = R"({
     "model": {"torus": {"segments": [40, 16]}},

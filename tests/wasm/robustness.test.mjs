@@ -228,7 +228,7 @@ describe('A simulation', () => {
         const cube = echinus.makeBox([1, 1, 1]);
         const open = echinus.makeMesh(cube.vertices, cube.faces.slice(3));
         const map = echinus.buildMap(open);
-        const scene = echinus.parseScene({ model: { torus: {} }, cloth: { size: [3, 3], particles: [10, 10], position: [0, 0, 2] }, surface_collision: false });
+        const scene = echinus.parseScene({ model: { torus: {} }, cloth: { size: [3, 3], particles: [10, 10], position: [0, 0, 2] }, collision: 'particles' });
         const error = errorOf(() => scene.makeSimulation(map));
         assert.equal(error.code, 'InvalidOptions');
         assert.match(error.message, /open mesh/);
@@ -253,7 +253,7 @@ describe('A simulation', () => {
 describe('A collider that deforms', () => {
     const sceneOf = (keys) => echinus.parseScene({ model: { torus: {} }, cloth: { size: [3, 3], particles: [10, 10], position: [0, 0, 2] }, ...keys });
     test('refuses vertices that are not those of its mesh, and goes on as it was', () => {
-        const scene = sceneOf({ surface_collision: true });
+        const scene = sceneOf({ collision: 'surfaces_and_self' });
         const mesh = scene.makeModel();
         const { vertices } = mesh;
         const simulation = scene.makeSimulation(scene.buildMap(mesh)), undisturbed = scene.makeSimulation(scene.buildMap(mesh));
@@ -272,7 +272,7 @@ describe('A collider that deforms', () => {
         assertAlive();
     });
     test('needs an exact map, and surfaces that collide', () => {
-        for (const [keys, words] of [[{ surface_collision: false }, /cannot deform without surface_collision/], [{ map: { kind: 'distance' } }, /has no exact map/]]) {
+        for (const [keys, words] of [[{ collision: 'particles' }, /cannot deform where only particles collide/], [{ map: { kind: 'distance' } }, /has no exact map/]]) {
             const scene = sceneOf(keys);
             const mesh = scene.makeModel();
             const error = errorOf(() => scene.makeSimulation(scene.buildMap(mesh)).setColliderVertices(mesh.vertices));

@@ -167,7 +167,7 @@ LoadedColliders load_colliders(const Scene& scene, const fs::path& scene_path,
     for (const SceneCollider& collider : scene.colliders) {
         const std::optional<fs::path> file = model_file(collider.model, scene_path, folders);
         if (file) loaded.files.push_back(*file);
-        TriangleMesh mesh = load_model(collider, scene_path, file, scene.simulation.surface_collision);
+        TriangleMesh mesh = load_model(collider, scene_path, file, scene.simulation.surfaces_collide());
         VertexCache& cache = loaded.caches.emplace_back();
         if (collider.cache) {
             const fs::path path = cache_path(*collider.cache, scene_path, folders);

@@ -46,8 +46,8 @@ struct SimulateArguments {
     std::optional<unsigned> thread_count; ///< in place of the scene's key, and for what is done on all cores
 
     unsigned threads_around() const { return thread_count.value_or(0); }
-    std::optional<bool> surfaces, self; ///< in place of the scene's keys
-    bool judges_all = false;            ///< saved frames, not only the last
+    std::optional<CollisionMode> collision; ///< in place of the scene's
+    bool judges_all = false;                ///< saved frames, not only the last
     bool obj = false;
     bool json = false;
 };
@@ -275,15 +275,16 @@ void open(Results& results, const SimulateArguments& arguments, const Scene& sce
     }
 }
 
-/// Without contact of surfaces there is none of the cloth with itself, unless it is asked for, and nothing to
-/// untangle.
+/// Where only particles collide there is nothing to untangle.
 void choose_collision(const SimulateArguments& arguments, Scene& scene) {
-    SimulationOptions& options = scene.simulation;
-    options.surface_collision = arguments.surfaces.value_or(options.surface_collision);
-    options.self_collision = arguments.self.value_or(options.self_collision && options.surface_collision);
-    options.untangle = options.untangle && options.surface_collision;
-    if (options.self_collision && !options.surface_collision)
-        throw WrongUse("--self", "needs surface collision: --surfaces on");
+    if (!arguments.collision) return;
+    auto* const newton = std::get_if<NewtonOptions>(&scene.simulation.solver);
+    if (newton == nullptr && arguments.collision != CollisionMode::Particles)
+        throw WrongUse("--collision", "needs the newton solver, and the scene has jakobsen, with which only "
+                                      "particles collide");
+    if (newton == nullptr) return;
+    newton->collision = *arguments.collision;
+    newton->untangle = newton->untangle && scene.simulation.surfaces_collide();
 }
 
 /// A sheet of about so many particles in place of the scene's, whose rows and columns keep their proportion.
@@ -470,11 +471,12 @@ void add_options(Command command, SimulateArguments& arguments) {
              "Write the final state, from which a run can resume, to a file or -")
         .not_empty()
         .type_name("FILE");
-    const std::vector<std::pair<std::string, std::optional<bool>>> on_or_off{{"on", true}, {"off", false}};
-    add_choice(command, "--surfaces", arguments.surfaces, on_or_off,
-               "Let faces and edges collide or not, in place of the scene's surface_collision");
-    add_choice(command, "--self", arguments.self, on_or_off,
-               "Let the cloth collide with itself or not, in place of the scene's self_collision");
+    const std::vector<std::pair<std::string, std::optional<CollisionMode>>> modes{
+        {"particles", CollisionMode::Particles},
+        {"surfaces", CollisionMode::Surfaces},
+        {"surfaces_and_self", CollisionMode::SurfacesAndSelf}};
+    add_choice(command, "--collision", arguments.collision, modes,
+               "The parts that collide, in place of the scene's collision");
     command
         .add("--threads", &arguments.thread_count,
              "Threads that build the map, simulate and test for intersections; 0: all cores. By default all "

@@ -64,7 +64,19 @@ const char* kind_of(const Simulation& simulation) {
 }
 
 const char* solver_of(const SimulationOptions& options) {
-    return options.solver == SolverKind::Newton ? "newton" : "jakobsen";
+    return options.kind() == SolverKind::Newton ? "newton" : "jakobsen";
+}
+
+const char* collision_of(const SimulationOptions& options) {
+    return options.layers_collide()     ? "surfaces_and_self"
+           : options.surfaces_collide() ? "surfaces"
+                                        : "particles";
+}
+
+/// In a frame.
+std::uint32_t most_iterations_of(const SimulationOptions& options) {
+    const auto* newton = std::get_if<NewtonOptions>(&options.solver);
+    return newton != nullptr ? newton->step_count : options.jakobsen().iteration_count;
 }
 
 Json json_of(const Vec3d& v) {
@@ -148,7 +160,7 @@ Json json_of(const std::vector<ColliderResult>& colliders, const Simulation& sim
     Json list = Json::array();
     for (std::size_t c = 0; c < colliders.size(); ++c) {
         Json collider = json_of(colliders[c], let_through(simulation.deformable(), c));
-        const bool are_measured = simulation.options().solver == SolverKind::Newton;
+        const bool are_measured = simulation.options().kind() == SolverKind::Newton;
         collider.add("load", are_measured ? json_of(simulation.load_on(c)) : Json(nullptr));
         collider.add("loads", are_measured ? json_of(colliders[c].loads) : Json(nullptr));
         list.push_back(std::move(collider));
@@ -187,7 +199,7 @@ Json to_json(const SimulationResult& result) {
         {"sticks", deformable.sticks.size()},
         {"tetrahedra", {{"count", deformable.tetrahedra.size()}, {"crushed", count_crushed(deformable)}}},
         {"solver", solver_of(options)},
-        {"iterations", options.iteration_count},
+        {"iterations", most_iterations_of(options)},
         {"time_step", options.time_step},
         {"frames", simulation.frame()},
         {"frames_to_rest", rest_frame},
@@ -203,8 +215,7 @@ Json to_json(const SimulationResult& result) {
         {"map_kind", kind_of(simulation)},
         {"lost_count", simulation.profile().lost_count},
         {"rescued_count", simulation.profile().rescued_count},
-        {"surface_collision", options.surface_collision},
-        {"self_collision", options.self_collision},
+        {"collision", collision_of(options)},
         {"truncated", {{"mean", rates.truncated_per_frame}, {"most", result.most_truncated}}},
         {"squeezed", simulation.profile().squeezed_count},
         {"inside_at_rest", result.verdict.inside_count},
@@ -231,10 +242,10 @@ Json to_json(const SimulationResult& result) {
 namespace {
 
 std::string text_of_solver(const SimulationOptions& options) {
-    if (options.solver == SolverKind::Newton)
-        return fmt::format("newton, at most {} steps of Newton's method per frame",
-                           options.newton_step_count);
-    return fmt::format("jakobsen, {} relaxations per frame", options.iteration_count);
+    const char* const form = options.kind() == SolverKind::Newton
+                                 ? "newton, at most {} steps of Newton's method per frame"
+                                 : "jakobsen, {} relaxations per frame";
+    return fmt::format(fmt::runtime(form), most_iterations_of(options));
 }
 
 std::string text_of(const std::optional<Strain>& strain) {
@@ -271,7 +282,7 @@ std::string to_text(const SimulationResult& result) {
     if (is_exact(simulation))
         add("particles lost", fmt::format("{}; rescued {} times", simulation.profile().lost_count,
                                           simulation.profile().rescued_count));
-    if (simulation.options().surface_collision)
+    if (simulation.options().surfaces_collide())
         add("vertices truncated",
             fmt::format("{:.2f} per frame, {} at most; {} unresolved pairs", rates.truncated_per_frame,
                         result.most_truncated, simulation.profile().squeezed_count));

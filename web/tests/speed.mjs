@@ -48,10 +48,10 @@ async function stepInPage(collision) {
     return mean(steps);
 }
 
-/** @param surfaces  on or off  @param environment  may choose the vector instructions */
-function stepOfNative(surfaces, environment = {}) {
+/** @param collision  as the scene's key  @param environment  may choose the vector instructions */
+function stepOfNative(collision, environment = {}) {
     const folder = mkdtempSync(join(tmpdir(), 'echinus-'));
-    const options = ['simulate', scene, '-o', folder, '--frames', String(LAST_STEP), '--every', String(LAST_STEP), '--threads', '1', '--surfaces', surfaces, '--self', 'off'];
+    const options = ['simulate', scene, '-o', folder, '--frames', String(LAST_STEP), '--every', String(LAST_STEP), '--threads', '1', '--collision', collision];
     execFileSync(program, options, { env: { ...process.env, ...environment }, stdio: 'ignore' });
     const { ms_per_frame } = JSON.parse(readFileSync(join(folder, 'report.json'), 'utf8'));
     rmSync(folder, { recursive: true });
@@ -74,8 +74,8 @@ for (const collision of ['surfaces=false', 'surfaces=true&self=false', 'surfaces
     console.log(`a time step, ${collision}: ${step[collision].toFixed(1)} ms; of real time ${(1000 / 60).toFixed(1)} ms, ${(step[collision] / step['surfaces=false']).toFixed(2)} times as long as particles alone`);
 }
 for (const [name, native, collision] of [
-    ['scalar, particles alone', stepOfNative('off', { ECHINUS_INSTRUCTION_SET: 'scalar' }), 'surfaces=false'],
-    ['particles alone', stepOfNative('off'), 'surfaces=false'],
-    ['surfaces', stepOfNative('on'), 'surfaces=true'],
+    ['scalar, particles alone', stepOfNative('particles', { ECHINUS_INSTRUCTION_SET: 'scalar' }), 'surfaces=false'],
+    ['particles alone', stepOfNative('particles'), 'surfaces=false'],
+    ['surfaces', stepOfNative('surfaces'), 'surfaces=true'],
 ])
     console.log(`native, ${name}: ${native.toFixed(1)} ms on ${scene}; the page takes ${(step[collision] / native).toFixed(2)} times as long`);

@@ -37,7 +37,9 @@ echinus_deformable_arrays arrays_of(const Deformable& deformable) {
     echinus_deformable_arrays arrays{};
     arrays.particle_count = deformable.particle_count();
     arrays.positions = reinterpret_cast<const float*>(deformable.positions.data());
-    arrays.previous_positions = reinterpret_cast<const float*>(deformable.previous_positions.data());
+    arrays.velocities = deformable.velocities.empty()
+                            ? nullptr
+                            : reinterpret_cast<const float*>(deformable.velocities.data());
     arrays.inverse_masses = deformable.inverse_masses.data();
     arrays.sticks = reinterpret_cast<const echinus_stick*>(deformable.sticks.data());
     arrays.stick_count = deformable.sticks.size();
@@ -80,9 +82,8 @@ Deformable deformable_from(const echinus_deformable_arrays& arrays) {
     const std::vector<Vec3f> positions = points_from(arrays.positions, count, 0, "positions");
     return {
         .positions = positions,
-        .previous_positions = arrays.previous_positions == nullptr
-                                  ? positions
-                                  : points_from(arrays.previous_positions, count, 0, "previous_positions"),
+        .velocities = arrays.velocities == nullptr ? std::vector<Vec3f>()
+                                                   : points_from(arrays.velocities, count, 0, "velocities"),
         .inverse_masses = arrays.inverse_masses == nullptr
                               ? std::vector<float>(count, 1.0F)
                               : copy_of<float>(arrays.inverse_masses, count, "inverse_masses"),

@@ -201,7 +201,7 @@ def make_soft_body(
 
 
 def combine(parts: Sequence[Deformable]) -> Deformable:
-    """Combines several deformables into one; with ``self_collision`` they collide with each other.
+    """Combines several deformables into one; with ``collision="surfaces_and_self"`` they collide with each other.
 
     The particles of the parts follow one after the other. Masses do not change, so they must be in the same unit:
     see :func:`with_masses_times`.

@@ -46,8 +46,7 @@ class SimulationOptions:
     bound: float
     keep_free: bool
     allow_open_colliders: bool
-    surface_collision: bool
-    self_collision: bool
+    collision: Literal["particles", "surfaces", "surfaces_and_self"]
     untangle: bool
     density: float
     stretch_stiffness: float
@@ -142,27 +141,25 @@ class Simulation:
         Distance that the deformable keeps from colliders, by default half the mean rest length of structural
         constraints (0 to 1e9).
     self_thickness
-        Distance that layers keep from each other, with ``self_collision``; less near small faces. By default the
-        thickness (0 to 1e9).
+        ``newton`` only: distance that layers keep from each other if they collide; less near small faces. By
+        default the thickness (0 to 1e9).
     friction
         Coulomb's coefficient between cloth and model; 0 is no friction (0 to 1e9).
     bound
         The largest distance of a particle from the initial middle of all particles; a particle farther away ends
         the simulation as diverged. 0: 10 000 times the initial extent (0 to 1e30).
     keep_free
-        Rescue particles that would pass through an exact map.
+        ``jakobsen`` only: rescue particles that would pass through an exact map.
     allow_open_colliders
-        Accept exact maps of open meshes, for which nothing is guaranteed. Surface collision does not need this
-        option.
-    surface_collision
-        Faces and edges collide with the model, too: none of them intersects it at the end of a frame, within
-        limits. By default ``true`` with an exact map, but not with ``jakobsen``.
-    self_collision
-        Faces of the deformable do not intersect each other either; needs ``surface_collision``. By default as
-        ``surface_collision``.
+        Accept exact maps of open meshes, for which nothing is guaranteed. The collision of surfaces does not need
+        this option.
+    collision
+        ``newton`` only: the parts that collide. ``particles``: particles with models; ``surfaces``: edges and
+        faces, too: none of them intersects a model at the end of a frame, within limits; ``surfaces_and_self``:
+        faces do not intersect each other either.
     untangle
-        Separate a start that intersects, or is inside the model, before the first frame instead of refusing it;
-        needs ``surface_collision``.
+        ``newton`` only: separate a start that intersects, or is inside the model, before the first frame instead of
+        refusing it; needs the collision of surfaces.
     density
         ``newton`` only, like the next four: mass of the cloth per area (1e-6 to 1e6 kg/m^2).
     stretch_stiffness
@@ -221,8 +218,7 @@ class Simulation:
         bound: float = 0,
         keep_free: bool = True,
         allow_open_colliders: bool = False,
-        surface_collision: bool | None = None,
-        self_collision: bool | None = None,
+        collision: Literal["particles", "surfaces", "surfaces_and_self"] = "surfaces_and_self",
         untangle: bool = False,
         density: float = 0.2,
         stretch_stiffness: float = 1000,
@@ -239,10 +235,6 @@ class Simulation:
         options = dict(locals())
         of_kind("deformable", deformable, Deformable)
         models = list_of_kind("colliders", colliders, Collider)
-        can_meet = keep_free and solver != "jakobsen" and all(isinstance(c.map, ExactMap) for c in models)
-        surfaces = _chosen(surface_collision, can_meet)
-        options["surface_collision"] = surfaces
-        options["self_collision"] = _chosen(self_collision, surfaces)
         self._frame_limit = whole("frame_limit", frame_limit)
         self._simulation = _core.Simulation(deformable._deformable, [c._arguments() for c in models], options)
 
@@ -255,8 +247,7 @@ class Simulation:
         cloth: MeshLike | None = None,
         rest_cloth: MeshLike | None = None,
         model_folders: Path | Sequence[Path] = (),
-        surface_collision: bool | None = None,
-        self_collision: bool | None = None,
+        collision: Literal["particles", "surfaces", "surfaces_and_self"] | None = None,
         untangle: bool | None = None,
         allow_open_colliders: bool = False,
         threads: int = 0,
@@ -276,12 +267,12 @@ class Simulation:
         model_folders
             A folder, or several, in which the scene's files are looked up first; then the scene's folder,
             its ``../models``, and ``models`` in the working folder.
-        surface_collision, self_collision, untangle
-            In place of the scene's keys. The last two need the first. A distance map as ``model`` has no
-            surface collision.
+        collision, untangle
+            In place of the scene's keys. With a distance map as ``model`` the default of ``collision`` is
+            ``particles``.
         allow_open_colliders
-            Accept a model that is not closed, for which nothing is guaranteed. Surface collision does not
-            need this option.
+            Accept a model that is not closed, for which nothing is guaranteed. The collision of surfaces
+            does not need this option.
         threads
             Threads that build maps; 0: all cores.
 
@@ -300,12 +291,12 @@ class Simulation:
         for warning in parsed.warnings:
             warnings.warn(warning, stacklevel=2)
         models = _one_for_each(model, parsed.collider_count)
-        if surface_collision is None and any(isinstance(given, DistanceMap) for given in models):
-            surface_collision = False
-        surfaces = flag("surface_collision", _chosen(surface_collision, parsed.surface_collision))
-        parsed.surface_collision = surfaces
-        parsed.self_collision = surfaces and flag("self_collision", _chosen(self_collision, parsed.self_collision))
-        parsed.untangle = surfaces and flag("untangle", _chosen(untangle, parsed.untangle))
+        if collision is None and any(isinstance(given, DistanceMap) for given in models):
+            collision = "particles"
+        if untangle is not None:
+            parsed.choose_untangle(flag("untangle", untangle))
+        if collision is not None:
+            parsed.choose_collision(collision)
         parsed.allow_open_colliders = flag("allow_open_colliders", allow_open_colliders)
         threads = threads_of(threads)
         folders = [model_folders] if isinstance(model_folders, (str, bytes, os.PathLike)) else model_folders
@@ -354,15 +345,9 @@ class Simulation:
         return self._simulation.positions
 
     @property
-    def previous_positions(self) -> NDArray[np.float32]:
-        """(particle_count, 3) The positions of particles one frame ago at their present velocities."""
-        return self._simulation.previous_positions
-
-    @property
     def velocities(self) -> NDArray[np.float32]:
-        """(particle_count, 3) Units per second, a new array."""
-        rate = np.float32(1 / self.options.time_step)
-        return (self.positions - self.previous_positions) * rate
+        """(particle_count, 3) Units per second; a read-only view, which every step changes: copy what you keep."""
+        return self._simulation.velocities
 
     @property
     def faces(self) -> NDArray[np.uint32]:
@@ -612,7 +597,7 @@ def _load_collider(
     else:
         arrays = scene.make_model(index) if file is None else arrays_of(read_mesh(files.find(file)))
     arrays = scene.repair(index, *arrays)
-    if not (scene.surface_collision or scene.allow_open_colliders):
+    if not (scene.surfaces_collide or scene.allow_open_colliders):
         _require_closed(Mesh(*arrays), file or "the model")
     if cache_file is None:
         return scene.build_map(*arrays, threads), None
@@ -626,6 +611,6 @@ def _require_closed(mesh: Mesh, name: str) -> None:
         raise Error(
             f"{name}: the model is not closed, so cloth would pass through it: {report.border_edges.count} edges have"
             f" one face, {report.misoriented_edges.count} have faces that disagree about the outside; mend it, or use"
-            " surface_collision",
+            " the collision of surfaces",
             "invalid_mesh",
         )

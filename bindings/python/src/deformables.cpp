@@ -40,7 +40,7 @@ Deformable soft_body(const py::array& vertices, const py::array_t<std::uint32_t>
 template <typename Use>
 void for_each_part(const Use& use) {
     use(&Deformable::positions);
-    use(&Deformable::previous_positions);
+    use(&Deformable::velocities);
     use(&Deformable::inverse_masses);
     use(&Deformable::sticks);
     use(&Deformable::faces);
@@ -77,8 +77,7 @@ Deformable deformable_of(const py::tuple& parts) {
         values.resize(text.size() / sizeof(T));
         if (!text.empty()) std::memcpy(values.data(), text.data(), text.size());
     });
-    require(deformable.previous_positions.size() == deformable.particle_count() &&
-            deformable.inverse_masses.size() == deformable.particle_count());
+    require(deformable.inverse_masses.size() == deformable.particle_count());
     return deformable;
 }
 

@@ -2,6 +2,7 @@
 
 #pragma once
 
+#include <echinus/error.hpp>
 #include <echinus/particle_collision.hpp>
 #include <echinus/soft_body.hpp>
 #include <echinus/surface_collision.hpp>
@@ -102,36 +103,53 @@ void for_each_option(Options& o, const Use& use) {
 template <typename Options, typename Use>
 requires std::same_as<std::remove_const_t<Options>, SimulationOptions>
 void for_each_option(Options& o, const Use& use) {
+    SolverKind kind = o.kind();
+    auto newton = o.kind() == SolverKind::Newton ? o.newton() : NewtonOptions{};
+    auto jakobsen = o.kind() == SolverKind::Jakobsen ? o.jakobsen() : JakobsenOptions{};
     use("time_step", o.time_step);
-    use("solver", o.solver, {"newton", "jakobsen"});
-    use("iteration_count", o.iteration_count);
-    use("newton_step_count", o.newton_step_count);
+    use("solver", kind, {"newton", "jakobsen"});
+    use("iteration_count", jakobsen.iteration_count);
+    use("newton_step_count", newton.step_count);
     use("rest_frame_count", o.rest.frame_count);
     use("rest_distance", o.rest.distance);
     use("rest_speed", o.rest.speed);
     use("gravity", o.gravity);
-    use("drag", o.drag);
-    use("stiffness", o.stiffness);
+    use("drag", jakobsen.drag);
+    use("stiffness", jakobsen.stiffness);
     use("thickness", o.thickness);
-    use("self_thickness", o.self_thickness);
+    use("self_thickness", newton.self_thickness);
     use("friction", o.friction);
     use("bound", o.bound);
-    use("keep_free", o.keep_free);
+    use("keep_free", jakobsen.keep_free);
     use("allow_open_colliders", o.allow_open_colliders);
-    use.unless_none("surface_collision", o.surface_collision);
-    use.unless_none("self_collision", o.self_collision);
-    use("untangle", o.untangle);
+    use("collision", newton.collision, {"particles", "surfaces", "surfaces_and_self"});
+    use("untangle", newton.untangle);
     use("threads", o.thread_count);
-    use("density", o.material.density);
-    use("stretch_stiffness", o.material.stretch_stiffness);
-    use("shear_stiffness", o.material.shear_stiffness);
-    use("bending_stiffness", o.material.bending_stiffness);
-    use("damping", o.material.damping);
-    use("newton_tolerance", o.newton_tolerance);
-    use("air_drag", o.air_drag);
+    use("density", newton.material.density);
+    use("stretch_stiffness", newton.material.stretch_stiffness);
+    use("shear_stiffness", newton.material.shear_stiffness);
+    use("bending_stiffness", newton.material.bending_stiffness);
+    use("damping", newton.material.damping);
+    use("newton_tolerance", newton.tolerance);
+    use("air_drag", newton.air_drag);
     use("wind", o.wind);
     use("wind_rate", o.wind_rate);
-    use("pressure", o.pressure);
+    use("pressure", newton.pressure);
+    if constexpr (!std::is_const_v<Options>) {
+        if (kind == SolverKind::Newton)
+            o.solver = newton;
+        else
+            o.solver = jakobsen;
+        if (kind == SolverKind::Newton && jakobsen != JakobsenOptions{})
+            throw Error(ErrorCode::InvalidOptions,
+                        "the solver is newton, and an option that only jakobsen has is set: one of "
+                        "iteration_count, drag, stiffness, keep_free");
+        if (kind == SolverKind::Jakobsen && newton != NewtonOptions{})
+            throw Error(ErrorCode::InvalidOptions,
+                        "the solver is jakobsen, and an option that only newton has is set: one of "
+                        "newton_step_count, self_thickness, collision, untangle, density, stretch_stiffness, "
+                        "shear_stiffness, bending_stiffness, damping, newton_tolerance, air_drag, pressure");
+    }
 }
 
 /// Calls use() with the name in Python and the member of each option.

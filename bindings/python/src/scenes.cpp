@@ -10,6 +10,8 @@
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
 
+#include <algorithm>
+#include <array>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -109,16 +111,37 @@ simulation_of_scene(const Scene& scene, const std::vector<ColliderMap>& maps,
     });
 }
 
+constexpr std::array kCollisionModes{"particles", "surfaces", "surfaces_and_self"};
+
+/// @param mode  a word of SimulationOptions; where only particles collide, nothing is untangled
+void choose_collision(Scene& scene, const std::string& mode) {
+    const auto found = std::find(kCollisionModes.begin(), kCollisionModes.end(), std::string_view(mode));
+    if (found == kCollisionModes.end())
+        throw py::value_error("collision is '" + mode +
+                              "'; it must be particles, surfaces or surfaces_and_self");
+    auto* const newton = std::get_if<NewtonOptions>(&scene.simulation.solver);
+    const auto chosen = static_cast<CollisionMode>(found - kCollisionModes.begin());
+    if (newton == nullptr && chosen != CollisionMode::Particles)
+        throw Error(ErrorCode::InvalidOptions, "collision is '" + mode +
+                                                   "', and with the jakobsen solver of the "
+                                                   "scene only particles collide");
+    if (newton == nullptr) return;
+    newton->collision = chosen;
+    newton->untangle = newton->untangle && scene.simulation.surfaces_collide();
+}
+
 void bind_options(py::class_<Scene>& scene) {
-    const auto flag = [&](const char* name, bool SimulationOptions::*member) {
-        scene.def_property(
-            name, [member](const Scene& s) { return s.simulation.*member; },
-            [member](Scene& s, bool on) { s.simulation.*member = on; });
-    };
-    flag("surface_collision", &SimulationOptions::surface_collision);
-    flag("self_collision", &SimulationOptions::self_collision);
-    flag("untangle", &SimulationOptions::untangle);
-    flag("allow_open_colliders", &SimulationOptions::allow_open_colliders);
+    scene
+        .def_property_readonly("surfaces_collide",
+                               [](const Scene& s) { return s.simulation.surfaces_collide(); })
+        .def("choose_collision", choose_collision)
+        .def("choose_untangle",
+             [](Scene& s, bool on) {
+                 if (auto* newton = std::get_if<NewtonOptions>(&s.simulation.solver)) newton->untangle = on;
+             })
+        .def_property(
+            "allow_open_colliders", [](const Scene& s) { return s.simulation.allow_open_colliders; },
+            [](Scene& s, bool on) { s.simulation.allow_open_colliders = on; });
 }
 
 } // namespace

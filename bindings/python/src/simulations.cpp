@@ -216,10 +216,9 @@ void bind_simulations(py::module_& module) {
                                                   self);
                                })
         .def_property_readonly(
-            "previous_positions",
+            "velocities",
             [](const py::object& self) {
-                return view_of(self.cast<SharedSimulation&>().unchanging().deformable().previous_positions,
-                               self);
+                return view_of(self.cast<SharedSimulation&>().unchanging().deformable().velocities, self);
             })
         .def_property_readonly("faces",
                                [](const py::object& self) {

@@ -559,8 +559,8 @@ export interface SceneDescription {
          */
         thickness?: number;
         /**
-         * Distance that layers keep from each other, with `self_collision`; less near small faces. By default the
-         * thickness (0 to 1e9). Default: `cloth.thickness`.
+         * `newton` only: distance that layers keep from each other if they collide; less near small faces. By default
+         * the thickness (0 to 1e9). Default: `cloth.thickness`.
          */
         self_thickness?: number;
         // End of options.
@@ -622,18 +622,14 @@ export interface SceneDescription {
     };
     // Options: surfaces. By bindings/generate_options from bindings/options.toml: edit that.
     /**
-     * Faces and edges collide with the model, too: none of them intersects it at the end of a frame, within limits.
-     * Default: `true` with an exact map, but not with `jakobsen`.
+     * `newton` only: the parts that collide. `particles`: particles with models; `surfaces`: edges and faces, too: none
+     * of them intersects a model at the end of a frame, within limits; `surfaces_and_self`: faces do not intersect each
+     * other either. Default: `surfaces_and_self` with an exact map, otherwise `particles`.
      */
-    surface_collision?: boolean;
+    collision?: 'particles' | 'surfaces' | 'surfaces_and_self';
     /**
-     * Faces of the deformable do not intersect each other either; needs `surface_collision`. Default: as
-     * `surface_collision`.
-     */
-    self_collision?: boolean;
-    /**
-     * Separate a start that intersects, or is inside the model, before the first frame instead of refusing it; needs
-     * `surface_collision`. Default: false.
+     * `newton` only: separate a start that intersects, or is inside the model, before the first frame instead of
+     * refusing it; needs the collision of surfaces. Default: false.
      */
     untangle?: boolean;
     // End of options.
@@ -811,7 +807,7 @@ export class Scene extends Deletable {
      *                 out; cloth, clothAtRest: the meshes of clothFile and clothRestFile, welded; bodies: for each body
      *                 its closed surface, which is filled with tetrahedra; null for a generated shape
      * @throws InvalidOptions for the exact map of an open mesh otherwise, for more or fewer maps than colliders, where
-     * a mesh is not given, and with surface_collision for a start that intersects; InvalidMesh for a mesh that is no
+     * a mesh is not given, and where surfaces collide for a start that intersects; InvalidMesh for a mesh that is no
      * cloth
      */
     makeSimulation(
@@ -855,7 +851,7 @@ export class Simulation extends Deletable {
      * old one.
      * @param maps  of all of the scene's colliders: those that this simulation does not have yet are added where the
      *              scene has them, and those beyond the scene's are left out. By default the colliders stay
-     * @throws InvalidOptions when the scene sets surface_collision and the cloth intersects now; set untangle too
+     * @throws InvalidOptions when surfaces collide in the scene and the cloth intersects now; set untangle too
      */
     continueWith(scene: Scene, maps?: AnyMap | readonly AnyMap[]): Simulation;
     /**
@@ -882,7 +878,7 @@ export class Simulation extends Deletable {
      * @param vertices  [3 vertexCount] in the collider's frame, in the order of the mesh from which its
      *                  map was built; copied, unless they are a PointBuffer
      * @throws InvalidOptions for another number of vertices, one that is not finite, a collider without an exact map,
-     * or a scene without surface_collision; InvalidMesh where no map is possible. Then nothing has changed
+     * or a scene where only particles collide; InvalidMesh where no map is possible. Then nothing has changed
      */
     setColliderVertices(vertices: PointBuffer | Float32Array, index?: number): void;
 
@@ -940,9 +936,9 @@ export interface SimulationProfile {
     rescuedCount: number;
     /** Number of times that a particle that was free before ended a frame inside an exact map or beyond its surface. */
     lostCount: number;
-    /** With surface_collision: number of times that the displacement of a particle was truncated. */
+    /** Where surfaces collide: number of times that the displacement of a particle was truncated. */
     truncatedCount: number;
-    /** With surface_collision: vertex-face and edge-edge pairs whose distance was measured. */
+    /** Where surfaces collide: vertex-face and edge-edge pairs whose distance was measured. */
     measuredPairCount: number;
     /** Unresolved pairs of elements, for which no free space was proven, summed over all steps. If 0, no faces intersect. */
     squeezedCount: number;

@@ -53,7 +53,7 @@ export const collider = { bytes: 136, members: {
     linearVelocity: [88, 'Float64', 3], angularVelocity: [112, 'Float64', 3],
 } };
 export const deformableArrays = { bytes: 60, members: {
-    size: [0, 'Uint32'], particleCount: [4, 'Uint32'], positions: [8, 'Uint32'], previousPositions: [12, 'Uint32'],
+    size: [0, 'Uint32'], particleCount: [4, 'Uint32'], positions: [8, 'Uint32'], velocities: [12, 'Uint32'],
     inverseMasses: [16, 'Uint32'], sticks: [20, 'Uint32'], stickCount: [24, 'Uint32'], faces: [28, 'Uint32'],
     faceCount: [32, 'Uint32'], attachments: [36, 'Uint32'], attachmentCount: [40, 'Uint32'], tetrahedra: [44, 'Uint32'],
     tetrahedronCount: [48, 'Uint32'], filters: [52, 'Uint32'], filterCount: [56, 'Uint32'],
@@ -73,7 +73,7 @@ export const contactPoint = { bytes: 112, members: {
 export const words = {
     solver: ['newton', 'jakobsen'], rule: ['nonzero', 'parity'], centre: ['sphere', 'search'],
     grid: ['spherical', 'octahedral', 'cube', 'ellipsoidal'], correction: ['none', 'paper', 'signed'],
-    entry: ['float32', 'unorm16'], pole: ['x', 'y', 'z'],
+    entry: ['float32', 'unorm16'], collision: ['particles', 'surfaces', 'surfaces_and_self'], pole: ['x', 'y', 'z'],
 };
 
 /** Words for the steps of a repair that need no guess, and the options that ask for them. */

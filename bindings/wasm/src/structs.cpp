@@ -84,7 +84,7 @@ static_assert(sizeof(echinus_collider) == 136 && offsetof(echinus_collider, size
 static_assert(sizeof(echinus_deformable_arrays) == 60 && offsetof(echinus_deformable_arrays, size) == 0 &&
               offsetof(echinus_deformable_arrays, particle_count) == 4 &&
               offsetof(echinus_deformable_arrays, positions) == 8 &&
-              offsetof(echinus_deformable_arrays, previous_positions) == 12 &&
+              offsetof(echinus_deformable_arrays, velocities) == 12 &&
               offsetof(echinus_deformable_arrays, inverse_masses) == 16 &&
               offsetof(echinus_deformable_arrays, sticks) == 20 &&
               offsetof(echinus_deformable_arrays, stick_count) == 24 &&

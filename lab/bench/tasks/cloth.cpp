@@ -158,8 +158,7 @@ constexpr std::uint32_t kTurn = 10; // frames
 
 /// The maps are compared by what keeps particles out, which all of them can.
 Scene of_particles(Scene scene) {
-    scene.simulation.surface_collision = scene.simulation.self_collision = scene.simulation.untangle = false;
-    scene.simulation.solver = SolverKind::Jakobsen;
+    scene.simulation.solver = JakobsenOptions{};
     scene.simulation.time_step = 1.0 / 240;
     return scene;
 }

@@ -28,8 +28,9 @@ constexpr double kGravity = 9.81;
 
 /// Nothing brakes, but for what a step loses.
 SimulationOptions undamped(double frames_per_second) {
-    SimulationOptions options{.time_step = 1 / frames_per_second, .air_drag = 0};
-    options.material.damping = 0;
+    SimulationOptions options{.solver = NewtonOptions{.air_drag = 0, .collision = CollisionMode::Particles},
+                              .time_step = 1 / frames_per_second};
+    options.newton().material.damping = 0;
     return options;
 }
 
@@ -104,7 +105,6 @@ Deformable strip(const Angle& angle) {
         const double a = angle((row + 0.5) * kPiece);
         place += Vec3d{0, std::sin(a), -std::cos(a)} * kPiece;
     }
-    cloth.previous_positions = cloth.positions;
     return cloth;
 }
 
@@ -135,7 +135,7 @@ void add_pendulums(const Setting& setting, Table& table) {
     for (const double pace : {60.0, 120.0}) {
         constexpr double kRodAngle = 0.1;
         SimulationOptions options = undamped(pace);
-        options.material.bending_stiffness = 1;
+        options.newton().material.bending_stiffness = 1;
         Simulation rod(strip([](double) { return kRodAngle; }), {}, options);
         const double rod_period =
             2 * std::numbers::pi * std::sqrt(2.0 / 3 / kGravity) * (1 + kRodAngle * kRodAngle / 16);
@@ -162,8 +162,7 @@ void add_pendulums(const Setting& setting, Table& table) {
 /// Computes energy and momentum of the published state in double precision.
 class Judge {
   public:
-    explicit Judge(const Simulation& simulation)
-        : gravity_(simulation.options().gravity), step_(simulation.options().time_step) {
+    explicit Judge(const Simulation& simulation) : gravity_(simulation.options().gravity) {
         const ElasticParts parts = elastic_parts(simulation.deformable(), simulation.options());
         masses_ = parts.masses;
         model_.emplace(parts); // which dissipates nothing, since no step begins
@@ -197,22 +196,17 @@ class Judge {
     }
 
   private:
-    Vec3d velocity(const Deformable& body, std::size_t i) const {
-        return (Vec3d(body.positions[i]) - Vec3d(body.previous_positions[i])) * (1 / step_);
-    }
+    static Vec3d velocity(const Deformable& body, std::size_t i) { return Vec3d(body.velocities[i]); }
 
     Vec3d gravity_;
-    double step_;
     std::vector<double> masses_;
     std::optional<ElasticModel> model_;
 };
 
 /// @param velocity_at  of a place
 template <typename VelocityAt>
-void throw_with(Deformable& body, double time_step, const VelocityAt& velocity_at) {
-    for (std::size_t i = 0; i < body.particle_count(); ++i)
-        body.previous_positions[i] =
-            Vec3f(Vec3d(body.positions[i]) - velocity_at(Vec3d(body.positions[i])) * time_step);
+void throw_with(Deformable& body, const VelocityAt& velocity_at) {
+    for (const Vec3f& place : body.positions) body.velocities.push_back(Vec3f(velocity_at(Vec3d(place))));
 }
 
 /// @param scale  of the energy, J
@@ -238,9 +232,7 @@ void add_energies(const Setting& setting, Table& table) {
         SimulationOptions weightless = undamped(pace);
         weightless.gravity = {};
         Deformable block = make_soft_body(make_solid_box({0.4, 0.2, 0.2}, {8, 4, 4}), {.young_modulus = 2e4});
-        throw_with(block, weightless.time_step, [](const Vec3d& p) {
-            return cross(Vec3d{1, 2, 3}, p) + Vec3d{2 * p.x, -p.y, 0};
-        });
+        throw_with(block, [](const Vec3d& p) { return cross(Vec3d{1, 2, 3}, p) + Vec3d{2 * p.x, -p.y, 0}; });
         const Simulation body(block, {}, weightless);
         add_energy("free soft block", body, seconds, Judge(body).energy(body), table);
 
@@ -249,7 +241,7 @@ void add_energies(const Setting& setting, Table& table) {
         for (std::uint32_t column = 0; column < kSide; ++column) sheet.pins.push_back(column);
         const SimulationOptions options = undamped(pace);
         add_energy("sheet that swings down", Simulation(make_cloth(sheet), {}, options), seconds,
-                   options.material.density * kGravity / 2, table);
+                   options.newton().material.density * kGravity / 2, table);
     }
 }
 
@@ -259,7 +251,7 @@ void add_momenta(const Setting& setting, Table& table) {
         SimulationOptions weightless = undamped(pace);
         weightless.gravity = {};
         Deformable sheet = make_cloth({.column_count = 33, .row_count = 33});
-        throw_with(sheet, weightless.time_step, [](const Vec3d& p) {
+        throw_with(sheet, [](const Vec3d& p) {
             return Vec3d{0.5, -0.2, 0.3} + cross(Vec3d{3, 1, 1}, p) + Vec3d{0, 0, 2 * p.x * p.x};
         });
         Simulation simulation(sheet, {}, weightless);
@@ -300,8 +292,8 @@ void add_chain(Table& table) {
         start.vertices.push_back(Vec3f(Vec3d{kSpan * share, 0, -depth * (1 - std::abs(2 * share - 1))}));
         if (i > 0) thread.threads.push_back({i - 1, i});
     }
-    SimulationOptions options{.air_drag = 3};
-    options.material.stretch_stiffness = 1e5; // it hardly stretches
+    SimulationOptions options{.solver = NewtonOptions{.air_drag = 3, .collision = CollisionMode::Particles}};
+    options.newton().material.stretch_stiffness = 1e5; // it hardly stretches
     Simulation chain(make_cloth(start, thread), {}, options);
     while (chain.frame() < 600) chain.step();
     table.add("sag of a chain", 60, -double{chain.positions()[kPieces / 2].z}, catenary_sag(kSpan), "m");
@@ -344,8 +336,10 @@ void add_beam(const Beam& beam, const Setting& setting, Records& records) {
     const double pace =
         std::sqrt(kYoung / kBeamDensity) * (hangs ? std::numbers::pi / 2 : 3.516 * height / std::sqrt(12.0));
     // The drag of the air makes the lowest oscillation die away soonest.
-    Simulation simulation(make_soft_body(mesh, material), {},
-                          {.gravity = down * kBeamGravity, .air_drag = 1.6 * pace});
+    Simulation simulation(
+        make_soft_body(mesh, material), {},
+        {.solver = NewtonOptions{.air_drag = 1.6 * pace, .collision = CollisionMode::Particles},
+         .gravity = down * kBeamGravity});
     constexpr std::uint32_t kFrames = 60;
     const double start = comparison::thread_seconds();
     while (simulation.frame() < kFrames) {

@@ -29,7 +29,7 @@ constexpr double kFramesPerSecond = 60; // of what is measured; a solver may tak
 
 struct Design {
     const char* name;
-    SolverKind solver = SolverKind::Newton;
+    bool is_paper = false; ///< the paper's solver
     double time_step = 1 / kFramesPerSecond;
     std::uint32_t newton_steps = 0; ///< 0: the default
     double tolerance = 0;           ///< 0: the default
@@ -38,15 +38,16 @@ struct Design {
 constexpr Design kNewton{.name = "newton"};
 constexpr Design kEightSteps{.name = "eight steps", .newton_steps = 8};
 constexpr Design kConverged{.name = "converged", .newton_steps = 200, .tolerance = 1e-6};
-constexpr Design kJakobsen{.name = "jakobsen", .solver = SolverKind::Jakobsen, .time_step = 1.0 / 240};
+constexpr Design kJakobsen{.name = "jakobsen", .is_paper = true, .time_step = 1.0 / 240};
 
 SimulationOptions options_of(const Design& design) {
     SimulationOptions options;
-    options.solver = design.solver;
     options.time_step = design.time_step;
-    if (design.newton_steps != 0) options.newton_step_count = design.newton_steps;
-    if (design.tolerance != 0) options.newton_tolerance = design.tolerance;
-    options.drag = options.air_drag = 0;
+    if (design.is_paper) options.solver = JakobsenOptions{.drag = 0};
+    if (design.is_paper) return options;
+    options.newton().air_drag = 0;
+    if (design.newton_steps != 0) options.newton().step_count = design.newton_steps;
+    if (design.tolerance != 0) options.newton().tolerance = design.tolerance;
     return options;
 }
 
@@ -86,7 +87,6 @@ Problem hung_by_two_corners(std::uint32_t side) {
         along += std::cos(angle) / last;
         across += std::sin(angle) / last;
     }
-    cloth.previous_positions = cloth.positions;
     return {"hung by two corners", std::move(cloth)};
 }
 
@@ -97,9 +97,10 @@ Problem fallen_on_a_ball(std::uint32_t side) {
     return {"fallen on a ball", make_cloth(sheet), {{.map = ExactMap::build(make_sphere(0.3, 64, 32))}}};
 }
 
-/// Under jakobsen only particles collide.
 Simulation simulation_of(const Problem& problem, SimulationOptions options) {
-    options.surface_collision = !problem.colliders.empty() && options.solver == SolverKind::Newton;
+    if (options.kind() == SolverKind::Newton)
+        options.newton().collision =
+            problem.colliders.empty() ? CollisionMode::Particles : CollisionMode::Surfaces;
     return Simulation(problem.cloth, problem.colliders, options);
 }
 
@@ -157,8 +158,10 @@ void add_moving(const Problem& problem, const Size& size, double stiffness, cons
     std::vector<Runner> runners;
     for (const Design& design : designs) {
         SimulationOptions options = options_of(design);
-        options.material.stretch_stiffness = stiffness;
-        options.material.shear_stiffness = 0.4 * stiffness;
+        if (options.kind() == SolverKind::Newton) {
+            options.newton().material.stretch_stiffness = stiffness;
+            options.newton().material.shear_stiffness = 0.4 * stiffness;
+        }
         runners.emplace_back(problem, options);
     }
     for (std::uint32_t frame = 0; frame < size.frame_count; frame += kTurn) {
@@ -195,8 +198,8 @@ void add_at_rest(const Problem& problem, std::uint32_t side, const Setting& sett
     std::vector<Vec3f> at_60;
     for (const double pace : {60.0, 30.0, 240.0}) {
         SimulationOptions options = options_of({.name = "", .time_step = 1 / pace});
-        options.material.damping = 0.2;
-        options.air_drag = 2;
+        options.newton().material.damping = 0.2;
+        options.newton().air_drag = 2;
         Simulation simulation = simulation_of(problem, options);
         const auto frame_count = static_cast<std::uint32_t>((setting.is_short ? 0.1 : kSeconds) * pace);
         for (std::uint32_t i = 0; i < frame_count; ++i) {
@@ -210,7 +213,7 @@ void add_at_rest(const Problem& problem, std::uint32_t side, const Setting& sett
             {{"state", "at rest"},
              {"problem", problem.name},
              {"side", fmt::format("{}", side)},
-             {"stiffness", fmt::format("{}", options.material.stretch_stiffness)},
+             {"stiffness", fmt::format("{}", options.newton().material.stretch_stiffness)},
              {"frames_per_second", fmt::format("{}", pace)},
              {"design", "newton"},
              {"strain_mean", fmt::format("{:.4g}", strain.mean)},

@@ -157,14 +157,12 @@ Fall folded_fall(const Setting& setting) {
     Deformable folded = make_cloth(cloth);
     const Rotation tilt = Rotation::about({1, 1, 0}, 0.1);
     const double speed = setting.is_short ? kShortSpeed : 0;
-    const SimulationOptions options;
     for (Vec3f& p : folded.positions) {
         fold_over(p.x, p.z, 0.5F * gap, 0.5F * gap);
         fold_over(p.y, p.z, 1.5F * gap, gap);
         p = Vec3f(tilt.apply(Vec3d(p)) + Vec3d{0.45, 0.4, 0.4});
     }
-    for (std::size_t i = 0; i < folded.particle_count(); ++i)
-        folded.previous_positions[i] = folded.positions[i] + Vec3f{0, 0, float(speed * options.time_step)};
+    folded.velocities.assign(folded.particle_count(), {0, 0, static_cast<float>(-speed)});
     return fall_onto("sheet folded in four", make_box({1, 1, 0.3}), std::move(folded), setting);
 }
 
@@ -349,7 +347,8 @@ class Runner {
   private:
     static SimulationOptions options_of(const Fall& fall, const Method& method) {
         SimulationOptions options = fall.options;
-        options.surface_collision = options.self_collision = method.of_faces;
+        options.newton().collision =
+            method.of_faces ? CollisionMode::SurfacesAndSelf : CollisionMode::Particles;
         return options;
     }
 

@@ -28,8 +28,7 @@ struct RestingCloth {
 RestingCloth drape(const Setting& setting) {
     Scene scene = read_scene(setting.scenes / "horse.json");
     if (setting.is_short) scene.cloth.column_count = scene.cloth.row_count = 30;
-    scene.simulation.surface_collision = scene.simulation.self_collision = false;
-    scene.simulation.solver = SolverKind::Jakobsen;
+    scene.simulation.solver = JakobsenOptions{};
     scene.simulation.time_step = 1.0 / 240;
     TriangleMesh model = repair(read_mesh(setting.debian_horse), scene.colliders.front().repair).mesh;
     Simulation simulation = make_simulation(scene, ExactMap::build(model));

@@ -34,7 +34,7 @@ std::vector<std::uint8_t> without_faces(const std::vector<Collider>& colliders,
                                         const SimulationOptions& options) {
     std::vector<std::uint8_t> result;
     for (const Collider& collider : colliders)
-        result.push_back(options.surface_collision && map_of_surface(collider) != nullptr ? 0 : 1);
+        result.push_back(options.surfaces_collide() && map_of_surface(collider) != nullptr ? 0 : 1);
     return result;
 }
 
@@ -63,7 +63,7 @@ SurfaceContacts::SurfaceContacts(const Deformable& deformable, const std::vector
       strengths_(strengths.begin(), strengths.end()), bodies_(bodies.begin(), bodies.end()),
       collider_count_(colliders.size()), particles_(deformable, colliders, without_faces(colliders, options),
                                                     *options.thickness, options.friction),
-      contacts_(own_->vertex_count(), colliders.size() + (options.self_collision ? 1 : 0), colliders.size(),
+      contacts_(own_->vertex_count(), colliders.size() + (options.layers_collide() ? 1 : 0), colliders.size(),
                 length(options.gravity)) {
     const float edge_length = mean_edge_length(*own_, deformable.positions);
     PointArrays places;
@@ -96,10 +96,10 @@ SurfaceContacts::SurfaceContacts(const Deformable& deformable, const std::vector
     for (const ElasticTetrahedron& tetrahedron : deformable.tetrahedra)
         for (const std::uint32_t v : tetrahedron.particles)
             most_[v] = std::min(most_[v], threshold::kMostOfHeight * least_height_of(tetrahedron));
-    if (options.self_collision) {
+    if (options.layers_collide()) {
         ContactSide& side = sides_.emplace_back(own_, places);
         side.number = static_cast<std::uint32_t>(collider_count_);
-        side.thickness = static_cast<float>(options.self_thickness.value_or(*options.thickness));
+        side.thickness = static_cast<float>(options.newton().self_thickness.value_or(*options.thickness));
         side.thickness = std::min(side.thickness, threshold::kMostSelfThickness * edge_length);
         side.pairs.set_reach(std::max(threshold::kReady * side.thickness, threshold::kReach * edge_length));
     }

@@ -46,7 +46,6 @@ class Weaver {
             if (row >= 1) add_sticks_to_previous(row);
             if (row >= 2) add_sticks_across(row);
         }
-        cloth_.previous_positions = cloth_.positions;
         for (const std::uint32_t pin : options_.pins) cloth_.inverse_masses[pin] = 0;
         return std::move(cloth_);
     }

@@ -53,7 +53,11 @@ void append(Deformable& to, const Deformable& part) {
         append(to.rest_positions, part.rest_positions.empty() ? part.positions : part.rest_positions);
     }
     append(to.positions, part.positions);
-    append(to.previous_positions, part.previous_positions);
+    if (!to.velocities.empty() || !part.velocities.empty()) {
+        to.velocities.resize(first);
+        append(to.velocities, part.velocities);
+        to.velocities.resize(to.particle_count());
+    }
     append(to.inverse_masses, part.inverse_masses);
     for (Stick stick : part.sticks) {
         stick.a += first;

@@ -92,7 +92,6 @@ class Tailor {
 
     void place_particles() {
         for (const Vec3f& vertex : mesh_.vertices) cloth_.positions.push_back(placed(vertex, options_));
-        cloth_.previous_positions = cloth_.positions;
         if (!options_.rest_vertices.empty()) cloth_.rest_positions = rest_;
     }
 

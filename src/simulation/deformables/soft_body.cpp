@@ -59,7 +59,6 @@ class Moulder {
                 refuse_mesh("vertex " + std::to_string(i) +
                             " of the soft body has a position that is not finite");
         }
-        body_.previous_positions = body_.positions;
     }
 
     void add_tetrahedron(std::size_t number) {

@@ -27,7 +27,7 @@ std::unique_ptr<Collision> make_collision(const Collider& collider, const Partic
 
 Collisions::Collisions(const Deformable& deformable, const std::vector<Collider>& colliders,
                        const Particles& particles, const SimulationOptions& options)
-    : rescues_(options.keep_free) {
+    : rescues_(options.jakobsen().keep_free) {
     for (std::size_t i = 0; i < colliders.size(); ++i)
         collisions_.push_back(make_collision(colliders[i], particles, let_through(deformable, i), options));
     is_away_.resize(collisions_.size());

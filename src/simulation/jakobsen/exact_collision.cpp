@@ -170,7 +170,7 @@ void ExactCollision::remember(std::size_t i, const Vec3f& position, const Contac
 }
 
 bool ExactCollision::meet_on_the_way(std::size_t i, const Particles& particles, Piece& piece) {
-    if (!options_.keep_free || !free_places_.has(i)) return false;
+    if (!options_.jakobsen().keep_free || !free_places_.has(i)) return false;
     const Vec3f position = particles.positions[i];
     if (length(position - known_.asked_at[i]) < known_.clearance[i]) return false;
     ++piece.map_query_count;
@@ -229,7 +229,7 @@ void ExactCollision::take_back(std::size_t i, Particles& particles) const {
 }
 
 void ExactCollision::end_frame(const Particles& particles) {
-    free_places_.end_frame(now_, particles, options_.keep_free);
+    free_places_.end_frame(now_, particles, options_.jakobsen().keep_free);
 }
 
 } // namespace echinus

@@ -76,8 +76,9 @@ void Wind::blow(std::span<const Triangle> faces, const Vec3f& wind_step, float s
 
 JakobsenSolver::JakobsenSolver(Deformable deformable_in, std::vector<Collider> colliders_in,
                                const SimulationOptions& options_in)
-    : Solver(std::move(deformable_in), std::move(colliders_in), options_in), particles_(deformable),
-      sticks_(jakobsen_sticks(deformable, options.stiffness)),
+    : Solver(std::move(deformable_in), std::move(colliders_in), options_in),
+      particles_(deformable, options.time_step),
+      sticks_(jakobsen_sticks(deformable, options.jakobsen().stiffness)),
       collisions_(deformable, colliders, particles_, options) {}
 
 void JakobsenSolver::step() {
@@ -86,7 +87,7 @@ void JakobsenSolver::step() {
     begin_frame();
     integrate();
     move_colliders();
-    for (std::uint32_t iteration = 0; iteration < options.iteration_count; ++iteration) {
+    for (std::uint32_t iteration = 0; iteration < options.jakobsen().iteration_count; ++iteration) {
         relax_sticks();
         collide();
     }
@@ -108,7 +109,7 @@ void JakobsenSolver::begin_frame() {
 void JakobsenSolver::integrate() {
     const Stopwatch stopwatch(profile.integration_seconds);
     const Vec3f fall(options.gravity * (options.time_step * options.time_step));
-    const auto keep = static_cast<float>(1 - options.drag);
+    const auto keep = static_cast<float>(1 - options.jakobsen().drag);
     const auto along = [&](std::vector<float> PointArrays::*axis, float fall_along) {
         integrate_axis((particles_.positions.*axis).data(), (particles_.previous.*axis).data(),
                        particles_.mobility.data(), particles_.count(), keep, fall_along);
@@ -146,14 +147,19 @@ void JakobsenSolver::keep_free() {
 void JakobsenSolver::publish() {
     const Stopwatch stopwatch(profile.integration_seconds);
     particles_.positions.store(deformable.positions);
-    particles_.previous.store(deformable.previous_positions);
+    publish_velocities();
+}
+
+void JakobsenSolver::publish_velocities() {
+    const auto rate = static_cast<float>(1 / options.time_step);
+    for (std::size_t i = 0; i < particles_.count(); ++i) deformable.velocities[i] = particles_.step(i) * rate;
 }
 
 void JakobsenSolver::judge_frame() {
     const Stopwatch stopwatch(profile.integration_seconds);
     float largest_motion_sq = 0;
     for (std::size_t i = 0; i < deformable.particle_count(); ++i) {
-        const Vec3f motion = deformable.positions[i] - deformable.previous_positions[i];
+        const Vec3f motion = particles_.step(i);
         largest_motion_sq = std::max(largest_motion_sq, dot(motion, motion));
     }
     largest_speed = std::sqrt(double{largest_motion_sq}) / options.time_step;
@@ -164,14 +170,14 @@ void JakobsenSolver::judge_frame() {
 void JakobsenSolver::set_particle_velocity(std::size_t particle, const Vec3d& velocity) {
     if (particles_.pinned(particle)) return;
     particles_.set_velocity(particle, velocity * options.time_step);
-    deformable.previous_positions[particle] = particles_.previous[particle];
+    deformable.velocities[particle] = Vec3f(velocity);
 }
 
 void JakobsenSolver::blow(const Vec3d& wind, double rate) {
     // No more than all of the difference, however long a frame is.
     const auto share = static_cast<float>(std::min(rate * options.time_step, 1.0));
     wind_.blow(deformable.faces, Vec3f(wind * options.time_step), share, particles_);
-    particles_.previous.store(deformable.previous_positions);
+    publish_velocities();
 }
 
 void JakobsenSolver::archive(StateArchive& state) {

@@ -70,6 +70,7 @@ class JakobsenSolver : public Solver {
     void collide();
     void keep_free();
     void publish();
+    void publish_velocities();
     void judge_frame();
 
     Particles particles_;

@@ -17,7 +17,7 @@ namespace {
 /// As the solver's options have them, whose collision this is.
 SimulationOptions simulation_options(double thickness, const ParticleCollisionOptions& options) {
     SimulationOptions all;
-    all.solver = SolverKind::Jakobsen;
+    all.solver = JakobsenOptions{};
     all.thickness = thickness;
     all.friction = options.friction;
     all.allow_open_colliders = options.allow_open_colliders;

@@ -14,7 +14,7 @@ namespace echinus {
 void Solver::teleport(const Teleport& teleport) {
     require_valid(teleport.motion, "a teleport");
     require_option(!std::isnan(teleport.time), "a teleport has a time that is not a number");
-    require_option(options.solver == SolverKind::Newton, "a teleport needs the newton solver");
+    require_option(options.kind() == SolverKind::Newton, "a teleport needs the newton solver");
     for (const std::uint32_t collider : teleport.colliders)
         require_option(collider < colliders.size(), "a teleport names collider " + std::to_string(collider) +
                                                         " of " + std::to_string(colliders.size()) +
@@ -59,7 +59,7 @@ void Solver::carry_out(const Teleport& teleport) {
             collider.linear_velocity = motion.rotation.apply(collider.linear_velocity);
             collider.angular_velocity = motion.rotation.apply(collider.angular_velocity);
         }
-        if (options.surface_collision && (goes[c] != 0) != teleport.deformable)
+        if (options.surfaces_collide() && (goes[c] != 0) != teleport.deformable)
             require_no_meeting(deformable, places, let_through(deformable, c), collider, name_of_collider(c));
     }
     colliders = std::move(moved);

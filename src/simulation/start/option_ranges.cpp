@@ -19,27 +19,29 @@ void require_ranges(const SoftBodyOptions& o) {
 }
 
 void require_ranges(const SimulationOptions& o) {
+    const auto newton = o.kind() == SolverKind::Newton ? o.newton() : NewtonOptions{};
+    const auto jakobsen = o.kind() == SolverKind::Jakobsen ? o.jakobsen() : JakobsenOptions{};
     require_within("simulation option time_step", o.time_step, 1e-9, 1e9);
-    require_within("simulation option iteration_count", o.iteration_count, 1, 1e6);
-    require_within("simulation option newton_step_count", o.newton_step_count, 1, 1000);
+    require_within("simulation option iteration_count", jakobsen.iteration_count, 1, 1e6);
+    require_within("simulation option newton_step_count", newton.step_count, 1, 1000);
     require_within("simulation option rest.frame_count", o.rest.frame_count, 1, 1e9);
     require_within("simulation option rest.distance", o.rest.distance, 0, 1e9);
     require_within("simulation option rest.speed", o.rest.speed, 0, std::numeric_limits<double>::infinity());
-    require_within("simulation option drag", o.drag, 0, 1);
-    require_within("simulation option stiffness", o.stiffness, 0, 1.99);
+    require_within("simulation option drag", jakobsen.drag, 0, 1);
+    require_within("simulation option stiffness", jakobsen.stiffness, 0, 1.99);
     require_within("simulation option thickness", o.thickness, 0, 1e9);
-    require_within("simulation option self_thickness", o.self_thickness, 0, 1e9);
+    require_within("simulation option self_thickness", newton.self_thickness, 0, 1e9);
     require_within("simulation option friction", o.friction, 0, 1e9);
     require_within("simulation option bound", o.bound, 0, 1e30);
-    require_within("simulation option material.density", o.material.density, 1e-6, 1e6);
-    require_within("simulation option material.stretch_stiffness", o.material.stretch_stiffness, 1e-6, 1e9);
-    require_within("simulation option material.shear_stiffness", o.material.shear_stiffness, 0, 1e9);
-    require_within("simulation option material.bending_stiffness", o.material.bending_stiffness, 0, 1e6);
-    require_within("simulation option material.damping", o.material.damping, 0, 1e6);
-    require_within("simulation option newton_tolerance", o.newton_tolerance, 0, 1);
-    require_within("simulation option air_drag", o.air_drag, 0, 1e6);
+    require_within("simulation option density", newton.material.density, 1e-6, 1e6);
+    require_within("simulation option stretch_stiffness", newton.material.stretch_stiffness, 1e-6, 1e9);
+    require_within("simulation option shear_stiffness", newton.material.shear_stiffness, 0, 1e9);
+    require_within("simulation option bending_stiffness", newton.material.bending_stiffness, 0, 1e6);
+    require_within("simulation option damping", newton.material.damping, 0, 1e6);
+    require_within("simulation option newton_tolerance", newton.tolerance, 0, 1);
+    require_within("simulation option air_drag", newton.air_drag, 0, 1e6);
     require_within("simulation option wind_rate", o.wind_rate, 0, 1e9);
-    require_within("simulation option pressure", o.pressure, 0, 1e9);
+    require_within("simulation option pressure", newton.pressure, 0, 1e9);
 }
 
 void require_ranges(const ParticleCollisionOptions& o) {

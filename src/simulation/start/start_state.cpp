@@ -26,12 +26,12 @@ namespace {
 
 constexpr std::size_t kNamed = 3;
 
-/// @param option  that asks for this
+/// @param mode  of collision, without this
 /// @param pinned  untangle() moves no pinned particle
-std::string remedy(const SimulationOptions& options, const char* option, bool pinned = false) {
+std::string remedy(const SimulationOptions& options, const char* mode, bool pinned = false) {
     return std::string("; move the start until they are apart, ") +
-           (options.untangle || pinned ? "" : "set untangle to separate them, ") + "or switch " + option +
-           " off";
+           (options.newton().untangle || pinned ? "" : "set untangle to separate them, ") +
+           "or set collision to " + mode;
 }
 
 /// With edges and vertices as faces without area, after the faces.
@@ -52,14 +52,14 @@ std::string name_of(const Elements& elements, std::uint32_t number) {
 /// @param name  of one of them
 template <typename Item, typename Name>
 [[noreturn]] void refuse(const std::string& what, const std::vector<Item>& found, const char* noun,
-                         const SimulationOptions& options, const char* option, const Name& name) {
+                         const SimulationOptions& options, const char* mode, const Name& name) {
     std::string sentence = "the deformable begins " + what + " " + std::to_string(found.size()) + " " + noun +
                            (found.size() == 1 ? "" : "s") +
-                           (options.untangle ? " that untangle could not separate: " : ": ");
+                           (options.newton().untangle ? " that untangle could not separate: " : ": ");
     for (std::size_t i = 0; i < std::min(found.size(), kNamed); ++i)
         sentence += (i == 0 ? "" : ", ") + name(found[i]);
     if (found.size() > kNamed) sentence += ", ...";
-    throw Error(ErrorCode::InvalidOptions, sentence + remedy(options, option));
+    throw Error(ErrorCode::InvalidOptions, sentence + remedy(options, mode));
 }
 
 void require_outside(const Deformable& deformable, std::span<const std::uint8_t> passes,
@@ -78,9 +78,9 @@ void require_outside(const Deformable& deformable, std::span<const std::uint8_t>
     throw Error(ErrorCode::InvalidOptions,
                 count + " particles begin inside " + name +
                     (pinned > 0 ? ", " + std::to_string(pinned) + " of them pinned there" : "") +
-                    (options.untangle ? "; untangle could not move them out" : "") +
+                    (options.newton().untangle ? "; untangle could not move them out" : "") +
                     "; the first is particle " + std::to_string(first - inside.begin()) +
-                    remedy(options, "surface_collision", pinned > 0));
+                    remedy(options, "particles", pinned > 0));
 }
 
 void require_apart(const Deformable& deformable, const TriangleMesh& surface, const Elements& elements,
@@ -89,13 +89,13 @@ void require_apart(const Deformable& deformable, const TriangleMesh& surface, co
     const ModelPairs pairs(collider, {passes.begin(), passes.end()});
     const auto [intersecting, touching] = pairs.with(surface);
     if (!intersecting.empty())
-        refuse("intersecting " + name + " in", intersecting, "pair", options, "surface_collision",
+        refuse("intersecting " + name + " in", intersecting, "pair", options, "particles",
                [&](const FacePair& pair) {
                    return name_of(elements, pair.a) + " of the deformable and face " +
                           std::to_string(pair.b) + " of " + name;
                });
     if (!touching.empty())
-        refuse("touching " + name + " with", touching, "face", options, "surface_collision",
+        refuse("touching " + name + " with", touching, "face", options, "particles",
                [&](std::uint32_t face) { return name_of(elements, face); });
     // Where nothing intersects, a piece is inside as a whole. An open surface has no inside.
     if (pairs.has_inside())
@@ -115,7 +115,7 @@ void require_resolved(const Deformable& deformable, const Elements& elements) {
                     " from the origin, where floats separate its layers only from a distance of " +
                     std::to_string(least_gap) + " on, and its mean edge length is " +
                     std::to_string(edge_length) +
-                    "; move the scene nearer to the origin, or switch self_collision off");
+                    "; move the scene nearer to the origin, or set collision to surfaces");
 }
 
 } // namespace
@@ -124,16 +124,16 @@ void require_apart(const Deformable& deformable, const std::vector<Collider>& co
                    const SimulationOptions& options) {
     const Elements elements = elements_of(deformable);
     // First, since floats that coarse make faces meet, too.
-    if (options.self_collision) require_resolved(deformable, elements);
+    if (options.layers_collide()) require_resolved(deformable, elements);
     const TriangleMesh surface = surface_of(deformable, elements);
     for (std::size_t i = 0; i < colliders.size(); ++i)
         if (map_of_surface(colliders[i]) != nullptr)
             require_apart(deformable, surface, elements, let_through(deformable, i), colliders[i], options,
                           name_of(colliders[i], i));
-    if (!options.self_collision) return;
+    if (!options.layers_collide()) return;
     const std::vector<FacePair> pairs = self_intersecting_pairs(surface);
     if (!pairs.empty())
-        refuse("intersecting itself in", pairs, "pair", options, "self_collision", [&](const FacePair& pair) {
+        refuse("intersecting itself in", pairs, "pair", options, "surfaces", [&](const FacePair& pair) {
             return name_of(elements, pair.a) + " and " + name_of(elements, pair.b);
         });
 }

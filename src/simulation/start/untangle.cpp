@@ -27,18 +27,17 @@ void untangle(Deformable& deformable, const std::vector<Collider>& colliders,
     const Elements elements = elements_of(deformable);
     std::vector<Vec3f> positions = deformable.positions;
     const float edge_length = mean_edge_length(elements, positions);
-    const auto thickness = static_cast<float>(options.self_thickness.value_or(*options.thickness));
+    const auto thickness = static_cast<float>(options.newton().self_thickness.value_or(*options.thickness));
     const float gap =
         std::clamp(kGapInThicknesses * thickness, kLeastGap * edge_length, kMostGap * edge_length);
     for (int turn = 0; turn < kMostTurns; ++turn) {
         const bool left_models = part_from_models(elements, deformable, colliders, options, positions);
         const bool face_moves = turn % 2 != 0; // the other way round has led into a model
-        const bool left_itself = options.self_collision &&
+        const bool left_itself = options.layers_collide() &&
                                  part_layers(elements, deformable.inverse_masses, gap, face_moves, positions);
         if (!left_models && !left_itself) break;
     }
     for (std::size_t v = 0; v < positions.size(); ++v) {
-        deformable.previous_positions[v] += positions[v] - deformable.positions[v];
         deformable.positions[v] = positions[v];
     }
 }

@@ -75,15 +75,12 @@ void require_valid(const SimulationOptions& options) {
     if (options.wind != Vec3d{} && options.wind_rate == 0)
         fail("simulation option wind_rate is 0, so the wind has no effect; set the rate, per "
              "second, at which the cloth takes on its velocity");
-    if (options.self_collision && !options.surface_collision)
-        fail("simulation option self_collision needs surface_collision, which keeps faces off colliders; "
-             "set both");
-    if (options.untangle && !options.surface_collision)
-        fail("simulation option untangle needs surface_collision, which requires a start without "
-             "intersections; set both");
-    if (options.surface_collision && !options.keep_free)
-        fail("simulation option keep_free is false; it must be true with surface_collision, which lets no "
-             "particle through");
+    const auto* newton = std::get_if<NewtonOptions>(&options.solver);
+    if (newton != nullptr && newton->collision > CollisionMode::SurfacesAndSelf)
+        fail("simulation option collision is none of the modes");
+    if (newton != nullptr && newton->untangle && !options.surfaces_collide())
+        fail("simulation option untangle needs the collision of surfaces, which requires a start without "
+             "intersections; set collision to surfaces or surfaces_and_self");
 }
 
 namespace {
@@ -116,17 +113,19 @@ void require_valid(const ElasticTetrahedron& tetrahedron, std::size_t particle_c
 void require_valid(const Deformable& deformable) {
     const std::size_t count = deformable.particle_count();
     if (count == 0) fail("the deformable has no particles");
-    if (deformable.previous_positions.size() != count || deformable.inverse_masses.size() != count)
+    const bool is_at_rest = deformable.velocities.empty();
+    if ((!is_at_rest && deformable.velocities.size() != count) || deformable.inverse_masses.size() != count)
         fail("the deformable has " + std::to_string(count) + " positions, " +
-             std::to_string(deformable.previous_positions.size()) + " previous positions and " +
+             std::to_string(deformable.velocities.size()) + " velocities and " +
              std::to_string(deformable.inverse_masses.size()) +
-             " inverse masses; it needs the same number of each");
+             " inverse masses; it needs the same number of each, or no velocities");
     for (std::size_t i = 0; i < count; ++i) {
         const float inverse_mass = deformable.inverse_masses[i];
-        if (!is_finite(deformable.positions[i]) || !is_finite(deformable.previous_positions[i]) ||
+        if (!is_finite(deformable.positions[i]) || (!is_at_rest && !is_finite(deformable.velocities[i])) ||
             !(inverse_mass >= 0) || !std::isfinite(inverse_mass))
             fail("particle " + std::to_string(i) +
-                 " has a position that is not finite or an inverse mass that is negative or not finite");
+                 " has a position or a velocity that is not finite or an inverse mass that is negative or "
+                 "not finite");
         if (!is_within_reach(deformable.positions[i]))
             fail("particle " + std::to_string(i) + " begins farther than 1e15 from the origin along an axis");
     }
@@ -176,13 +175,8 @@ void require_jakobsen(const Deformable& deformable, const SimulationOptions& opt
     };
     refuse(!deformable.tetrahedra.empty(),
            "the deformable has tetrahedra, which the jakobsen solver does not support; leave them out");
-    refuse(options.pressure > 0,
-           "simulation option pressure is positive, and the jakobsen solver does not support it; leave "
-           "it out");
     refuse(!deformable.handles.empty(), "the deformable has handles, which the jakobsen solver does not "
                                         "support; pin or attach the particles");
-    refuse(options.surface_collision, "simulation option surface_collision is true, but with the jakobsen "
-                                      "solver only particles collide; leave it out");
     refuse(rounding_decides(deformable, options),
            "the deformable begins so far from the origin, or time_step is so small, that in a frame of the "
            "jakobsen solver gravity moves particles by little more than a float's last digit; begin nearer");
@@ -191,9 +185,9 @@ void require_jakobsen(const Deformable& deformable, const SimulationOptions& opt
 } // namespace
 
 void require_solver(const Deformable& deformable, const SimulationOptions& options) {
-    if (options.solver == SolverKind::Jakobsen) require_jakobsen(deformable, options);
+    if (options.kind() == SolverKind::Jakobsen) return require_jakobsen(deformable, options);
     require_option(
-        !(options.pressure > 0) || !closed_pieces(deformable).empty(),
+        !(options.newton().pressure > 0) || !closed_pieces(deformable).empty(),
         "simulation option pressure is positive, and no piece of the cloth is closed; close one, or "
         "leave the pressure out");
 }
@@ -280,12 +274,12 @@ void require_valid(const Collider& collider, const SimulationOptions& options, c
     if (custom != nullptr && *custom == nullptr) fail(name + " has a custom map that is a null pointer");
     require_no_origin(origin_of(collider.map), name);
     const auto* exact = std::get_if<ExactMap>(&collider.map.kind);
-    if (!options.surface_collision && exact != nullptr && !exact->view().border.empty() &&
+    if (!options.surfaces_collide() && exact != nullptr && !exact->view().border.empty() &&
         !options.allow_open_colliders)
         fail(name + " has the exact map of an open mesh, with " +
              std::to_string(exact->view().border.size()) +
              " border edges, where particles get in; close the mesh (repair() mends some), use a distance "
-             "map, set surface_collision, which needs no inside, or set allow_open_colliders and lose "
+             "map, let surfaces collide, which needs no inside, or set allow_open_colliders and lose "
              "particles");
 }
 

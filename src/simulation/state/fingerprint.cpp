@@ -48,17 +48,17 @@ class Hasher {
 
 std::uint64_t hash_of(const SimulationOptions& options) {
     Hasher hasher;
-    hasher.add(options.solver, options.time_step, options.iteration_count, options.gravity, options.drag,
-               options.stiffness, options.thickness.value_or(-1), options.friction, options.rest.distance,
-               options.rest.speed, options.rest.frame_count, options.keep_free, options.allow_open_colliders,
-               options.surface_collision, options.self_collision, options.self_thickness.value_or(-1),
-               options.bound);
-    hasher.add(options.wind, options.wind_rate);
-    if (options.solver == SolverKind::Newton)
-        hasher.add(options.material.density, options.material.stretch_stiffness,
-                   options.material.shear_stiffness, options.material.bending_stiffness,
-                   options.material.damping, options.newton_step_count, options.newton_tolerance,
-                   options.air_drag, options.pressure);
+    hasher.add(options.kind(), options.time_step, options.gravity, options.thickness.value_or(-1),
+               options.friction, options.rest.distance, options.rest.speed, options.rest.frame_count,
+               options.allow_open_colliders, options.bound, options.wind, options.wind_rate);
+    if (const auto* newton = std::get_if<NewtonOptions>(&options.solver))
+        hasher.add(newton->material.density, newton->material.stretch_stiffness,
+                   newton->material.shear_stiffness, newton->material.bending_stiffness,
+                   newton->material.damping, newton->step_count, newton->tolerance, newton->air_drag,
+                   newton->pressure, newton->collision, newton->self_thickness.value_or(-1));
+    else
+        hasher.add(options.jakobsen().iteration_count, options.jakobsen().drag, options.jakobsen().stiffness,
+                   options.jakobsen().keep_free);
     return hasher.hash();
 }
 

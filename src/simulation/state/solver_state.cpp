@@ -45,7 +45,7 @@ void Solver::archive_colliders(StateArchive& state) {
         state.flag(deforms);
         if (deforms && !deforming_[c]) {
             const auto* exact = std::get_if<ExactMap>(&collider.map.kind);
-            state.require(exact != nullptr && options.surface_collision);
+            state.require(exact != nullptr && options.surfaces_collide());
             deforming_[c].emplace(*exact, name_of_collider(c));
         }
         if (!deforms && deforming_[c]) {

@@ -34,8 +34,7 @@ export function sceneFor(settings: Settings, body: Body, act: Act, { falls } = {
         ...(own.cloth && { cloth: { thickness, ...own.cloth } }),
         material: { ...cottonBy(radius), friction: settings.friction, ...own.material },
         gravity: UNIT[body.up].map((part) => -9.81 * radius * part) as [number, number, number],
-        surface_collision: surfaces,
-        self_collision: self,
+        collision: !surfaces ? 'particles' : self ? 'surfaces_and_self' : 'surfaces',
         untangle: surfaces && falls, // it may intersect where particles alone have collided
         at_rest: { distance: 0.001 * radius, speed: 0.1 * radius },
     };

@@ -958,10 +958,10 @@ typedef struct echinus_deformable echinus_deformable;
 typedef struct echinus_deformable_arrays {
     size_t size;
     size_t particle_count;
-    const float* positions;          ///< [3 particle_count]
-    const float* previous_positions; ///< [3 particle_count] one frame ago; NULL: at rest
-    const float* inverse_masses;     ///< [particle_count] 0 for a pinned particle; NULL means 1 for all
-    const echinus_stick* sticks;     ///< in the order of relaxation; Newton uses only those of threads
+    const float* positions;      ///< [3 particle_count]
+    const float* velocities;     ///< [3 particle_count] units per second; NULL: at rest
+    const float* inverse_masses; ///< [particle_count] 0 for a pinned particle; NULL means 1 for all
+    const echinus_stick* sticks; ///< in the order of relaxation; Newton uses only those of threads
     size_t stick_count;
     const uint32_t* faces; ///< [3 face_count]
     size_t face_count;
@@ -1076,7 +1076,7 @@ ECHINUS_API echinus_status echinus_deformable_soft_body(const echinus_tetrahedra
                                                         echinus_deformable** deformable);
 
 /// Combines several deformables into one, the particles of one part after those of the other. With
-/// self_collision they collide with each other.
+/// ECHINUS_COLLISION_SURFACES_AND_SELF they collide with each other.
 /// @param parts  [part_count]
 /// @return ECHINUS_INVALID_OPTIONS, naming the part, if a part refers to a particle that it does not have
 ECHINUS_API echinus_status echinus_deformable_combine(const echinus_deformable* const* parts,
@@ -1100,6 +1100,13 @@ ECHINUS_API echinus_status echinus_deformable_read(const echinus_deformable* def
 ECHINUS_API void echinus_deformable_destroy(echinus_deformable* deformable);
 
 // ---- Simulations ----
+
+/// The parts of a deformable that collide; CollisionMode in simulation.hpp describes them.
+typedef enum echinus_collision_mode {
+    ECHINUS_COLLISION_PARTICLES = 0,
+    ECHINUS_COLLISION_SURFACES = 1,
+    ECHINUS_COLLISION_SURFACES_AND_SELF = 2
+} echinus_collision_mode;
 
 /// The method by which a deformable moves.
 typedef enum echinus_solver {
@@ -1144,27 +1151,28 @@ typedef struct echinus_simulation_options {
     /// Distance that the deformable keeps from colliders, by default half the mean rest length of structural
     /// constraints (0 to 1e9), or ECHINUS_THICKNESS_CHOSEN
     double thickness;
-    /// Distance that layers keep from each other, with self_collision; less near small faces. By default the
-    /// thickness (0 to 1e9), or ECHINUS_THICKNESS_CHOSEN
+    /// Newton only: distance that layers keep from each other if they collide; less near small faces. By
+    /// default the thickness (0 to 1e9), or ECHINUS_THICKNESS_CHOSEN
     double self_thickness;
     /// Coulomb's coefficient between cloth and model; 0 is no friction (0 to 1e9)
     double friction;
     /// The largest distance of a particle from the initial middle of all particles; a particle farther away
     /// ends the simulation as diverged. 0: 10 000 times the initial extent (0 to 1e30)
     double bound;
-    /// Rescue particles that would pass through an exact map
+    /// Jakobsen only: rescue particles that would pass through an exact map
     int32_t keep_free;
-    /// Accept exact maps of open meshes, for which nothing is guaranteed. Surface collision does not need
-    /// this option
+    /// Accept exact maps of open meshes, for which nothing is guaranteed. The collision of surfaces does not
+    /// need this option
     int32_t allow_open_colliders;
-    /// Faces and edges collide with the model, too: none of them intersects it at the end of a frame, within
-    /// limits
-    int32_t surface_collision;
-    /// Faces of the deformable do not intersect each other either; needs surface_collision
-    int32_t self_collision;
-    /// Separate a start that intersects, or is inside the model, before the first frame instead of refusing
-    /// it; needs surface_collision
+    /// Newton only: the parts that collide. particles: particles with models; surfaces: edges and faces, too:
+    /// none of them intersects a model at the end of a frame, within limits; surfaces_and_self: faces do not
+    /// intersect each other either
+    echinus_collision_mode collision;
+    /// Newton only: separate a start that intersects, or is inside the model, before the first frame instead
+    /// of refusing it; needs the collision of surfaces
     int32_t untangle;
+    /// 0
+    uint32_t reserved;
     /// Threads that compute a frame; 0: all cores. The results do not depend on it, bit for bit (0 to 1024)
     uint32_t thread_count;
     /// Newton only, like the next four: mass of the cloth per area (1e-6 to 1e6 kg/m^2)
@@ -1313,7 +1321,7 @@ ECHINUS_API echinus_status echinus_simulation_set_collider_keyframes(echinus_sim
                                                                      size_t key_count);
 
 /// During the next frame the vertices of a collider move to these positions along straight lines; then they
-/// stop. This needs an exact map and options.surface_collision; the map is rebuilt in this call.
+/// stop. This needs an exact map and the collision of surfaces; the map is rebuilt in this call.
 /// @param vertices  [vertex_count] in the model's own frame, in the number and order of the mesh from which
 /// its map was built
 /// @return ECHINUS_INVALID_OPTIONS; then nothing has changed

@@ -105,17 +105,18 @@ class EchinusEngine : public Engine {
     std::string name() const override { return "Echinus"; }
     std::string version() const override { return ECHINUS_VERSION_STRING; }
     std::string configuration() const override {
-        return simulation_.options().surface_collision ? "surfaces" : "particles only";
+        return simulation_.options().surfaces_collide() ? "surfaces" : "particles only";
     }
     unsigned substeps() const override {
         return static_cast<unsigned>(std::lround(kFrameSeconds / simulation_.options().time_step));
     }
     std::map<std::string, std::string> settings() const override {
         const SimulationOptions& options = simulation_.options();
-        const bool surfaces = options.surface_collision;
-        return {{"solver", surfaces ? "newton" : "jakobsen"},
+        const auto* newton = std::get_if<NewtonOptions>(&options.solver);
+        return {{"solver", newton != nullptr ? "newton" : "jakobsen"},
                 {"time step", fmt::format("1/{:.0f} s", 1 / options.time_step)},
-                {"iterations", fmt::format("{}", options.iteration_count)},
+                {"iterations", fmt::format("{}", newton != nullptr ? newton->step_count
+                                                                   : options.jakobsen().iteration_count)},
                 {"thickness", fmt::format("{:.4g} R", options.thickness.value())},
                 {"friction", fmt::format("{}", options.friction)}};
     }
@@ -131,14 +132,13 @@ class EchinusEngine : public Engine {
         SimulationOptions options;
         options.gravity = {0, -kGravity, 0};
         options.friction = kFriction;
-        options.surface_collision = options.self_collision = surfaces;
         if (!surfaces) {
-            options.solver = SolverKind::Jakobsen;
+            options.solver = JakobsenOptions{};
             options.time_step = 1.0 / 240;
         }
         if (task.is_matched) {
             options.time_step = kFrameSeconds;
-            options.iteration_count = kMatchedIterations;
+            if (!surfaces) options.jakobsen().iteration_count = kMatchedIterations;
             options.thickness = kMatchedThickness;
         }
         return {make_cloth(task.cloth, MeshClothOptions{}),
