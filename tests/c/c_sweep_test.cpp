@@ -137,6 +137,8 @@ class Samples {
             echinus_tetrahedralize_options_init(&result, sizeof result);
             result.lattice_size = 0.3;
         }
+        if constexpr (std::is_same_v<Struct, echinus_simulation_options>)
+            echinus_simulation_options_init(&result, sizeof result);
         return result;
     }
 
