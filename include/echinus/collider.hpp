@@ -120,15 +120,17 @@ Contact contact(const Collider& collider, Vec3f point_world, float margin_world 
 
 /// @param points_world  [n]
 /// @param inside        [n] out: 1 inside, 0 outside. Must not overlap points_world.
+/// @param thread_count  0: all cores. Used for 32 768 points or more; a custom map is asked by all of them
 /// @pre points_world.size() == inside.size()
 void contains_batch(const Collider& collider, StridedSpan<const Vec3f> points_world,
-                    std::span<std::uint8_t> inside) noexcept;
+                    std::span<std::uint8_t> inside, unsigned thread_count = 1) noexcept;
 
 /// @param points_world  [n]
 /// @param contacts      [n] out. Must not overlap points_world.
+/// @param thread_count  as in contains_batch()
 /// @pre points_world.size() == contacts.size()
 void contacts_batch(const Collider& collider, StridedSpan<const Vec3f> points_world, float margin_world,
-                    std::span<Contact> contacts) noexcept;
+                    std::span<Contact> contacts, unsigned thread_count = 1) noexcept;
 
 /// The output of contacts_into(): the existing contacts, one after the other, with a separate array for each
 /// member. An empty array is not written, and one that is too short receives the first contacts. The members
@@ -175,6 +177,15 @@ std::size_t contacts_into(std::span<const Collider> colliders, StridedSpan<const
 /// map's sweep. Distance maps and custom maps have no sweep, so no crossing is found.
 SweepHit sweep(const Collider& collider, const RigidTransform& previous_pose, Vec3f from_world,
                Vec3f to_world) noexcept;
+
+/// sweep() for many particles.
+/// @param from_world, to_world  [n]
+/// @param hits                  [n] out. Must not overlap the points
+/// @param thread_count          0: all cores. Used for 32 768 particles or more
+/// @pre all three have the same size
+void sweep_batch(const Collider& collider, const RigidTransform& previous_pose,
+                 StridedSpan<const Vec3f> from_world, StridedSpan<const Vec3f> to_world,
+                 std::span<SweepHit> hits, unsigned thread_count = 1) noexcept;
 
 } // namespace echinus
 

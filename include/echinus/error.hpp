@@ -37,6 +37,17 @@ class Error : public std::runtime_error {
     ErrorCode code_;
 };
 
+/// Called with a sentence when a call violates a precondition (`@pre`) whose check costs next to nothing: the
+/// sizes of batches, and indices of colliders and particles. Where it returns, the call returns, too, without
+/// any effect. The default throws std::logic_error. Functions that are noexcept then end the program.
+using PreconditionHandler = void (*)(const char* sentence);
+
+/// Sets the handler for the whole program, for example one that logs or breaks into a debugger. Any thread
+/// may call this at any time.
+/// @param handler  null: the default
+/// @return the previous one; null: the default
+PreconditionHandler set_precondition_handler(PreconditionHandler handler) noexcept;
+
 } // namespace echinus
 
 ECHINUS_EXPORT_END

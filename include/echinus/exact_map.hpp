@@ -141,6 +141,14 @@ bool contains(const ExactMapView& map, Vec3f point_local) noexcept;
 /// The answer of contains(), and whether it is certain.
 Containment classify(const ExactMapView& map, Vec3f point_local) noexcept;
 
+/// classify() for many points.
+/// @param points_local  [n]
+/// @param answers       [n] out. Must not overlap points_local
+/// @param thread_count  0: all cores. Used for 32 768 points or more; the answers do not depend on it
+/// @pre points_local.size() == answers.size()
+void classify_batch(const ExactMapView& map, StridedSpan<const Vec3f> points_local,
+                    std::span<Containment> answers, unsigned thread_count = 1) noexcept;
+
 /// The winding number of the surface around a point: the signed number of times that the surface surrounds
 /// it. It is an integer for a closed surface, and otherwise the generalised winding number (Jacobson et al.
 /// 2013), whose distance from one half shows how much holes and gaps matter. contains() rounds it: a point is
@@ -263,6 +271,15 @@ struct SweepHit {
 /// of a cell takes a few comparisons; other segments test the faces whose boxes they meet before the first
 /// crossing.
 SweepHit sweep(const ExactMapView& map, Vec3f from_local, Vec3f to_local) noexcept;
+
+/// sweep() for many segments.
+/// @param from_local, to_local  [n]
+/// @param hits                  [n] out. Must not overlap the points
+/// @param thread_count          0: all cores. Used for 32 768 segments or more
+/// @pre all three have the same size
+void sweep_batch(const ExactMapView& map, StridedSpan<const Vec3f> from_local,
+                 StridedSpan<const Vec3f> to_local, std::span<SweepHit> hits,
+                 unsigned thread_count = 1) noexcept;
 
 // ---- Deforming surfaces
 

@@ -79,6 +79,19 @@ struct TriangleSweepHit {
 TriangleSweepHit sweep(const ExactMapView& map, const TrianglePoints& from_local,
                        const TrianglePoints& to_local) noexcept;
 
+// The same for many triangles. All arrays have the same size (@pre), and the output must not overlap the
+// triangles. thread_count, 0 for all cores, is used for 32 768 triangles or more.
+
+/// @param intersecting  [n] out: 0 or 1
+void intersects_batch(const ExactMapView& map, StridedSpan<const TrianglePoints> triangles_local,
+                      std::span<std::uint8_t> intersecting, unsigned thread_count = 1) noexcept;
+/// @param farthest  as for clearance()
+void clearance_batch(const ExactMapView& map, StridedSpan<const TrianglePoints> triangles_local,
+                     float farthest, std::span<Clearance> clearances, unsigned thread_count = 1) noexcept;
+void sweep_batch(const ExactMapView& map, StridedSpan<const TrianglePoints> from_local,
+                 StridedSpan<const TrianglePoints> to_local, std::span<TriangleSweepHit> hits,
+                 unsigned thread_count = 1) noexcept;
+
 /// A list of faces for each of many triangles.
 struct FaceLists {
     std::vector<std::uint32_t> offsets; ///< [triangle_count + 1] the start of each list; the last is the end

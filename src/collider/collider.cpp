@@ -1,6 +1,8 @@
 #include "collider/frame_change.hpp"
 #include "collider/queries_in_frame.hpp"
 #include "geometry/box.hpp"
+#include "geometry/parallel.hpp"
+#include "geometry/precondition.hpp"
 
 #include <echinus/collider.hpp>
 
@@ -137,24 +139,36 @@ Contact contact(const Collider& collider, Vec3f point_world, float margin_world)
 }
 
 void contains_batch(const Collider& collider, StridedSpan<const Vec3f> points_world,
-                    std::span<std::uint8_t> inside) noexcept {
+                    std::span<std::uint8_t> inside, unsigned thread_count) noexcept {
+    if (!meets(points_world.size() == inside.size(),
+               "contains_batch: there are not as many inside as points"))
+        return;
     const FrameChange frame(collider);
-    with_queries(collider, frame, 0, [&]<typename Queries>(const Queries& queries) {
-        for_each_piece<Queries::kPieceSize>(frame, points_world, [&](std::size_t begin, auto points_local) {
-            queries.ask_contains(points_local, inside.subspan(begin, points_local.size()));
+    for_each_piece(inside.size(), thread_count, [&](std::size_t first, std::size_t end) {
+        const StridedSpan<const Vec3f> points = points_world.subspan(first, end - first);
+        with_queries(collider, frame, 0, [&]<typename Queries>(const Queries& queries) {
+            for_each_piece<Queries::kPieceSize>(frame, points, [&](std::size_t begin, auto points_local) {
+                queries.ask_contains(points_local, inside.subspan(first + begin, points_local.size()));
+            });
         });
     });
 }
 
 void contacts_batch(const Collider& collider, StridedSpan<const Vec3f> points_world, float margin_world,
-                    std::span<Contact> contacts) noexcept {
+                    std::span<Contact> contacts, unsigned thread_count) noexcept {
+    if (!meets(points_world.size() == contacts.size(),
+               "contacts_batch: there are not as many contacts as points"))
+        return;
     const FrameChange frame(collider);
-    with_queries(collider, frame, margin_world, [&]<typename Queries>(const Queries& queries) {
-        for_each_piece<Queries::kPieceSize>(frame, points_world, [&](std::size_t begin, auto points_local) {
-            const std::span<Contact> piece = contacts.subspan(begin, points_local.size());
-            queries.ask_contacts(points_local, piece);
-            for (std::size_t i = 0; i < piece.size(); ++i)
-                queries.to_world(piece[i], points_local[i], points_world[begin + i]);
+    for_each_piece(contacts.size(), thread_count, [&](std::size_t first, std::size_t end) {
+        const StridedSpan<const Vec3f> points = points_world.subspan(first, end - first);
+        with_queries(collider, frame, margin_world, [&]<typename Queries>(const Queries& queries) {
+            for_each_piece<Queries::kPieceSize>(frame, points, [&](std::size_t begin, auto points_local) {
+                const std::span<Contact> piece = contacts.subspan(first + begin, points_local.size());
+                queries.ask_contacts(points_local, piece);
+                for (std::size_t i = 0; i < piece.size(); ++i)
+                    queries.to_world(piece[i], points_local[i], points[begin + i]);
+            });
         });
     });
 }
@@ -233,6 +247,18 @@ std::vector<Vec3f> vertices_at(const VertexCache& cache, double seconds) {
         for (std::size_t i = 0; i < vertices.size(); ++i)
             vertices[i] += (from[cache.vertex_count + i] - from[i]) * share;
     return vertices;
+}
+
+void sweep_batch(const Collider& collider, const RigidTransform& previous_pose,
+                 StridedSpan<const Vec3f> from_world, StridedSpan<const Vec3f> to_world,
+                 std::span<SweepHit> hits, unsigned thread_count) noexcept {
+    if (!meets(from_world.size() == hits.size() && to_world.size() == hits.size(),
+               "sweep_batch: starts, ends and hits differ in number"))
+        return;
+    for_each_piece(hits.size(), thread_count, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i)
+            hits[i] = sweep(collider, previous_pose, from_world[i], to_world[i]);
+    });
 }
 
 } // namespace echinus

@@ -81,8 +81,10 @@ inline void read_body_options(JsonObject& object, SoftBodyOptions& o) {
 
 inline void read_solver_options(JsonObject& object, SimulationOptions& o) {
     SolverKind kind = o.kind();
-    auto newton = o.kind() == SolverKind::Newton ? o.newton() : NewtonOptions{};
-    auto jakobsen = o.kind() == SolverKind::Jakobsen ? o.jakobsen() : JakobsenOptions{};
+    NewtonOptions newton;
+    if (const auto* held = std::get_if<NewtonOptions>(&o.solver)) newton = *held;
+    JakobsenOptions jakobsen;
+    if (const auto* held = std::get_if<JakobsenOptions>(&o.solver)) jakobsen = *held;
     object.read("time_step", o.time_step, {1e-9, 1e9});
     object.read("iterations", jakobsen.iteration_count, {1, 1e6});
     object.read("newton_steps", newton.step_count, {1, 1000});
@@ -107,8 +109,10 @@ inline void read_rest_options(JsonObject& object, SimulationOptions& o) {
 
 inline void read_material_options(JsonObject& object, SimulationOptions& o) {
     SolverKind kind = o.kind();
-    auto newton = o.kind() == SolverKind::Newton ? o.newton() : NewtonOptions{};
-    auto jakobsen = o.kind() == SolverKind::Jakobsen ? o.jakobsen() : JakobsenOptions{};
+    NewtonOptions newton;
+    if (const auto* held = std::get_if<NewtonOptions>(&o.solver)) newton = *held;
+    JakobsenOptions jakobsen;
+    if (const auto* held = std::get_if<JakobsenOptions>(&o.solver)) jakobsen = *held;
     object.read("drag", jakobsen.drag, {0, 1});
     object.read("friction", o.friction, {0, 1e9});
     object.read("air_drag", newton.air_drag, {0, 1e6});
@@ -121,8 +125,10 @@ inline void read_material_options(JsonObject& object, SimulationOptions& o) {
 
 inline void read_jakobsen_options(JsonObject& object, SimulationOptions& o) {
     SolverKind kind = o.kind();
-    auto newton = o.kind() == SolverKind::Newton ? o.newton() : NewtonOptions{};
-    auto jakobsen = o.kind() == SolverKind::Jakobsen ? o.jakobsen() : JakobsenOptions{};
+    NewtonOptions newton;
+    if (const auto* held = std::get_if<NewtonOptions>(&o.solver)) newton = *held;
+    JakobsenOptions jakobsen;
+    if (const auto* held = std::get_if<JakobsenOptions>(&o.solver)) jakobsen = *held;
     object.read("structural", jakobsen.stiffness[0], {0, 1.99});
     object.read("shear", jakobsen.stiffness[1], {0, 1.99});
     object.read("bending", jakobsen.stiffness[2], {0, 1.99});
@@ -134,8 +140,10 @@ inline void read_jakobsen_options(JsonObject& object, SimulationOptions& o) {
 
 inline void read_thickness_options(JsonObject& object, SimulationOptions& o) {
     SolverKind kind = o.kind();
-    auto newton = o.kind() == SolverKind::Newton ? o.newton() : NewtonOptions{};
-    auto jakobsen = o.kind() == SolverKind::Jakobsen ? o.jakobsen() : JakobsenOptions{};
+    NewtonOptions newton;
+    if (const auto* held = std::get_if<NewtonOptions>(&o.solver)) newton = *held;
+    JakobsenOptions jakobsen;
+    if (const auto* held = std::get_if<JakobsenOptions>(&o.solver)) jakobsen = *held;
     object.read("thickness", o.thickness, {0, 1e9});
     object.read("self_thickness", newton.self_thickness, {0, 1e9});
     if (kind != SolverKind::Newton) object.refuse_keys({"self_thickness"}, "solver", "newton");
@@ -147,8 +155,10 @@ inline void read_thickness_options(JsonObject& object, SimulationOptions& o) {
 
 inline void read_surfaces_options(JsonObject& object, SimulationOptions& o) {
     SolverKind kind = o.kind();
-    auto newton = o.kind() == SolverKind::Newton ? o.newton() : NewtonOptions{};
-    auto jakobsen = o.kind() == SolverKind::Jakobsen ? o.jakobsen() : JakobsenOptions{};
+    NewtonOptions newton;
+    if (const auto* held = std::get_if<NewtonOptions>(&o.solver)) newton = *held;
+    JakobsenOptions jakobsen;
+    if (const auto* held = std::get_if<JakobsenOptions>(&o.solver)) jakobsen = *held;
     if (const auto word = object.read_word("collision", {"particles", "surfaces", "surfaces_and_self"}))
         newton.collision = static_cast<CollisionMode>(*word);
     object.read("untangle", newton.untangle);
@@ -161,8 +171,10 @@ inline void read_surfaces_options(JsonObject& object, SimulationOptions& o) {
 
 inline void read_newton_options(JsonObject& object, SimulationOptions& o) {
     SolverKind kind = o.kind();
-    auto newton = o.kind() == SolverKind::Newton ? o.newton() : NewtonOptions{};
-    auto jakobsen = o.kind() == SolverKind::Jakobsen ? o.jakobsen() : JakobsenOptions{};
+    NewtonOptions newton;
+    if (const auto* held = std::get_if<NewtonOptions>(&o.solver)) newton = *held;
+    JakobsenOptions jakobsen;
+    if (const auto* held = std::get_if<JakobsenOptions>(&o.solver)) jakobsen = *held;
     object.read("density", newton.material.density, {1e-6, 1e6});
     object.read("stretch_stiffness", newton.material.stretch_stiffness, {1e-6, 1e9});
     object.read("shear_stiffness", newton.material.shear_stiffness, {0, 1e9});

@@ -10,7 +10,7 @@
 
 namespace echinus {
 
-/// What particles and colliders must stay within. A simulation in which something did not has diverged, and
+/// The bounds of particles and colliders. A simulation in which something has left them has diverged, and
 /// ends.
 class Bounds {
   public:

@@ -68,7 +68,7 @@ struct Particles {
     }
     std::size_t count() const { return mobility.size(); }
     bool pinned(std::size_t i) const { return mobility[i] == 0; }
-    /// What the particle has moved in this frame.
+    /// The displacement of the particle in this frame.
     Vec3f step(std::size_t i) const { return positions[i] - previous[i]; }
     /// Gives a particle, where it is, another velocity: what it has moved in this frame.
     void set_velocity(std::size_t i, const Vec3d& step) {

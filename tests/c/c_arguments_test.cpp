@@ -81,17 +81,17 @@ TEST(CArguments, AreNotNeededForNoPoints) {
     echinus_collider_init(&collider, sizeof collider, map.get());
     CArray offsets, faces;
     expect_ok(echinus_map_contains(map.get(), nullptr, 0, 0, 1, nullptr));
-    expect_ok(echinus_map_classify(map.get(), nullptr, 0, 0, nullptr, nullptr));
+    expect_ok(echinus_map_classify(map.get(), nullptr, 0, 0, 1, nullptr, nullptr));
     expect_ok(echinus_map_contacts(map.get(), nullptr, 0, 0, 0, 1, nullptr));
-    expect_ok(echinus_map_sweep(map.get(), nullptr, 0, nullptr, 0, 0, nullptr));
-    expect_ok(echinus_map_intersects(map.get(), nullptr, 0, 0, nullptr));
-    expect_ok(echinus_map_clearance(map.get(), nullptr, 0, 0, 1, nullptr));
-    expect_ok(echinus_map_sweep_triangles(map.get(), nullptr, 0, nullptr, 0, 0, nullptr));
+    expect_ok(echinus_map_sweep(map.get(), nullptr, 0, nullptr, 0, 0, 1, nullptr));
+    expect_ok(echinus_map_intersects(map.get(), nullptr, 0, 0, 1, nullptr));
+    expect_ok(echinus_map_clearance(map.get(), nullptr, 0, 0, 1, 1, nullptr));
+    expect_ok(echinus_map_sweep_triangles(map.get(), nullptr, 0, nullptr, 0, 0, 1, nullptr));
     expect_ok(echinus_map_faces_within(map.get(), nullptr, 0, 0, nullptr, 0, 1, 1, out(offsets), out(faces)));
     EXPECT_EQ(values_of<std::uint32_t>(offsets).size(), 1U);
     EXPECT_EQ(values_of<std::uint32_t>(faces).size(), 0U);
-    expect_ok(echinus_collider_contains(&collider, nullptr, 0, 0, nullptr));
-    expect_ok(echinus_collider_contacts(&collider, nullptr, 0, 0, 0, nullptr));
+    expect_ok(echinus_collider_contains(&collider, nullptr, 0, 0, 1, nullptr));
+    expect_ok(echinus_collider_contacts(&collider, nullptr, 0, 0, 0, 1, nullptr));
 }
 
 TEST(CArguments, StridesAreWholeFloatsAndWideEnough) {
@@ -124,8 +124,8 @@ TEST(CArguments, MapsHaveTheKindThatAQueryNeeds) {
     const CMap distance = c_distance_map(mesh);
     const float points[9] = {};
     echinus_sweep_hit hit;
-    expect_refused(echinus_map_sweep(distance.get(), points, 0, points, 0, 1, &hit), ECHINUS_INVALID_ARGUMENT,
-                   "map is not an exact map");
+    expect_refused(echinus_map_sweep(distance.get(), points, 0, points, 0, 1, 1, &hit),
+                   ECHINUS_INVALID_ARGUMENT, "map is not an exact map");
     const CMap exact = c_map(mesh);
     echinus_distance_map_statistics statistics{};
     statistics.size = sizeof statistics;

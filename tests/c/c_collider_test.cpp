@@ -55,13 +55,14 @@ void expect_answers_of_cpp(const Pair& pair) {
     const std::vector<Vec3f> points = pair.points();
     std::vector<std::uint8_t> inside(points.size()), expected_inside(points.size());
     contains_batch(pair.by_cpp, points, expected_inside);
-    expect_ok(echinus_collider_contains(&pair.collider, &points.data()->x, points.size(), 0, inside.data()));
+    expect_ok(
+        echinus_collider_contains(&pair.collider, &points.data()->x, points.size(), 0, 1, inside.data()));
     EXPECT_EQ(inside, expected_inside);
     EXPECT_GT(std::ranges::count(inside, 1), 0);
     std::vector<echinus_contact> contacts(points.size());
     std::vector<Contact> expected(points.size());
     contacts_batch(pair.by_cpp, points, 0.2F, expected);
-    expect_ok(echinus_collider_contacts(&pair.collider, &points.data()->x, points.size(), 12, 0.2F,
+    expect_ok(echinus_collider_contacts(&pair.collider, &points.data()->x, points.size(), 12, 0.2F, 1,
                                         contacts.data()));
     for (std::size_t i = 0; i < points.size(); ++i) ASSERT_TRUE(same(contacts[i], expected[i])) << i;
 }
@@ -91,7 +92,7 @@ TEST(CColliders, MoveAsInCpp) {
     const std::vector<Vec3f> points = pair.points();
     constexpr std::size_t kCount = 500;
     std::vector<echinus_sweep_hit> hits(kCount);
-    expect_ok(echinus_collider_sweep(&pair.collider, &after, &points[0].x, 0, &points[kCount].x, 0, kCount,
+    expect_ok(echinus_collider_sweep(&pair.collider, &after, &points[0].x, 0, &points[kCount].x, 0, kCount, 1,
                                      hits.data()));
     std::size_t hit_count = 0;
     for (std::size_t i = 0; i < kCount; ++i) {
@@ -108,8 +109,8 @@ TEST(CColliders, AreRefusedWhenTheirPoseIsNone) {
     std::uint8_t inside = 0;
     const float point[3] = {};
     const auto expect_wrong = [&](const char* words) {
-        expect_refused(echinus_collider_contains(&collider, point, 1, 0, &inside), ECHINUS_INVALID_ARGUMENT,
-                       words);
+        expect_refused(echinus_collider_contains(&collider, point, 1, 0, 1, &inside),
+                       ECHINUS_INVALID_ARGUMENT, words);
         echinus_collider_init(&collider, sizeof collider, map.get());
     };
     echinus_collider_init(&collider, sizeof collider, map.get());
@@ -127,7 +128,7 @@ TEST(CColliders, AreRefusedWhenTheirPoseIsNone) {
     expect_wrong("size of collider is 3");
     collider.map = nullptr;
     expect_wrong("the map of the collider is NULL");
-    expect_ok(echinus_collider_contains(&collider, point, 1, 0, &inside));
+    expect_ok(echinus_collider_contains(&collider, point, 1, 0, 1, &inside));
 
     double rotation[4];
     const double zero[3] = {};

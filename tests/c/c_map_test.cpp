@@ -287,8 +287,8 @@ TEST(CQueries, SayWhereTheyAreCertain) {
     const CMap map = c_map(c_mesh_of(open_torus()));
     const std::vector<Vec3f> points = points_everywhere(3000);
     std::vector<std::uint8_t> inside(points.size()), certain(points.size());
-    expect_ok(
-        echinus_map_classify(map.get(), &points.data()->x, points.size(), 0, inside.data(), certain.data()));
+    expect_ok(echinus_map_classify(map.get(), &points.data()->x, points.size(), 0, 1, inside.data(),
+                                   certain.data()));
     std::size_t uncertain_count = 0;
     for (std::size_t i = 0; i < points.size(); ++i) {
         const Containment expected = classify(by_cpp.view(), points[i]);
@@ -300,7 +300,7 @@ TEST(CQueries, SayWhereTheyAreCertain) {
 
     const CMap distance = c_distance_map(c_torus());
     const DistanceMap distance_by_cpp = DistanceMap::build(make_torus(1.0, 0.4, 60, 24));
-    expect_ok(echinus_map_classify(distance.get(), &points.data()->x, points.size(), 0, inside.data(),
+    expect_ok(echinus_map_classify(distance.get(), &points.data()->x, points.size(), 0, 1, inside.data(),
                                    certain.data()));
     for (std::size_t i = 0; i < points.size(); ++i) {
         ASSERT_EQ(inside[i] != 0, contains(distance_by_cpp.view(), points[i])) << i;
@@ -357,7 +357,7 @@ TEST(CQueries, SweepAsInCpp) {
     const std::span<const Vec3f> from = std::span(points).first(1000), to = std::span(points).last(1000);
     const std::vector<float> floats = spread(from, 20);
     std::vector<echinus_sweep_hit> hits(from.size());
-    expect_ok(echinus_map_sweep(map.get(), floats.data(), 20, &to.data()->x, 0, from.size(), hits.data()));
+    expect_ok(echinus_map_sweep(map.get(), floats.data(), 20, &to.data()->x, 0, from.size(), 1, hits.data()));
     std::size_t hit_count = 0;
     for (std::size_t i = 0; i < from.size(); ++i) {
         const SweepHit expected = sweep(by_cpp.view(), from[i], to[i]);
@@ -388,9 +388,9 @@ TEST(CQueries, OfTrianglesAreThoseOfCpp) {
     std::vector<echinus_clearance> clearances(kCount);
     std::vector<echinus_triangle_sweep_hit> hits(kCount);
     const float* first = &from.front()[0].x;
-    expect_ok(echinus_map_intersects(map.get(), first, kCount, 36, meets.data()));
-    expect_ok(echinus_map_clearance(map.get(), first, kCount, 0, 0.5F, clearances.data()));
-    expect_ok(echinus_map_sweep_triangles(map.get(), first, 0, &to.front()[0].x, 36, kCount, hits.data()));
+    expect_ok(echinus_map_intersects(map.get(), first, kCount, 36, 1, meets.data()));
+    expect_ok(echinus_map_clearance(map.get(), first, kCount, 0, 0.5F, 1, clearances.data()));
+    expect_ok(echinus_map_sweep_triangles(map.get(), first, 0, &to.front()[0].x, 36, kCount, 1, hits.data()));
     for (std::size_t i = 0; i < kCount; ++i) {
         ASSERT_EQ(meets[i] != 0, intersects(by_cpp.view(), from[i])) << i;
         const Clearance clear = clearance(by_cpp.view(), from[i], 0.5F);
@@ -398,7 +398,7 @@ TEST(CQueries, OfTrianglesAreThoseOfCpp) {
         const TriangleSweepHit hit = sweep(by_cpp.view(), from[i], to[i]);
         ASSERT_EQ(std::memcmp(&hits[i], &hit, sizeof hit), 0) << i;
     }
-    expect_refused(echinus_map_intersects(map.get(), first, kCount, 12, meets.data()),
+    expect_refused(echinus_map_intersects(map.get(), first, kCount, 12, 1, meets.data()),
                    ECHINUS_INVALID_ARGUMENT, "at least 36");
 }
 

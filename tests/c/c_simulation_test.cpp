@@ -175,7 +175,7 @@ TEST(CSimulations, TakeARowOfColliders) {
     EXPECT_EQ(read.pose.translation[0], 5);
     std::uint8_t inside = 0;
     const float point[3] = {6, 0, 0};
-    expect_ok(echinus_collider_contains(&read, point, 1, 0, &inside));
+    expect_ok(echinus_collider_contains(&read, point, 1, 0, 1, &inside));
     EXPECT_EQ(inside, 1);
     expect_refused(echinus_simulation_read_collider(simulation.get(), 2, &read), ECHINUS_INVALID_ARGUMENT,
                    "there is no collider 2; there are 2");

@@ -255,7 +255,7 @@ TEST(CColliders, DeformAsInCpp) {
     expect_ok(echinus_simulation_read_collider(pair.in_c.get(), 0, &before));
     const float point[3] = {0, 0, -0.31F};
     std::uint8_t inside = 0;
-    expect_ok(echinus_collider_contains(&before, point, 1, 0, &inside));
+    expect_ok(echinus_collider_contains(&before, point, 1, 0, 1, &inside));
     EXPECT_EQ(inside, 1);
 
     pair.expect_same_after(2);
@@ -352,7 +352,7 @@ TEST_F(CSoftBodyScenes, AreReadWithTheirFiles) {
     expect_ok(echinus_simulation_read_collider(simulation.get(), 1, &collider));
     const float point[3] = {0, 0, -0.32F};
     std::uint8_t inside = 0;
-    expect_ok(echinus_collider_contains(&collider, point, 1, 0, &inside));
+    expect_ok(echinus_collider_contains(&collider, point, 1, 0, 1, &inside));
     EXPECT_EQ(inside, 1);
 }
 

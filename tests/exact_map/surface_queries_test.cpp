@@ -402,3 +402,31 @@ TEST(FacesWithin, HoldTheFaceOfTheClearance) {
         if (nearest.distance > 1e-5F) ASSERT_TRUE(lists[0].empty()) << i;
     }
 }
+
+TEST(SurfaceQueries, AnswerInBatchesAsOneByOneOnAnyNumberOfThreads) {
+    const ExactMap map = ExactMap::build(make_torus(1, 0.4, 24, 12));
+    constexpr std::size_t kCount = 33'000; // so many that threads share them
+    Random random(41);
+    std::vector<TrianglePoints> from, to;
+    for (std::size_t i = 0; i < kCount; ++i) {
+        from.push_back(random_triangle(random, map, 0.1F));
+        to.push_back(random_triangle(random, map, 0.1F));
+    }
+    for (const unsigned thread_count : {1U, 2U}) {
+        std::vector<std::uint8_t> meets(kCount);
+        std::vector<Clearance> clearances(kCount);
+        std::vector<TriangleSweepHit> hits(kCount);
+        intersects_batch(map, from, meets, thread_count);
+        clearance_batch(map, from, 0.2F, clearances, thread_count);
+        sweep_batch(map, from, to, hits, thread_count);
+        for (std::size_t i = 0; i < kCount; i += 37) {
+            EXPECT_EQ(meets[i] != 0, intersects(map, from[i])) << i;
+            const Clearance clear = clearance(map, from[i], 0.2F);
+            EXPECT_EQ(clearances[i].face, clear.face) << i;
+            EXPECT_EQ(clearances[i].distance, clear.distance) << i;
+            const TriangleSweepHit hit = sweep(map, from[i], to[i]);
+            EXPECT_EQ(hits[i].face, hit.face) << i;
+            EXPECT_EQ(hits[i].fraction, hit.fraction) << i;
+        }
+    }
+}

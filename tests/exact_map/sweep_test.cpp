@@ -1,6 +1,7 @@
 #include "exact_map/query/ray_crossing.hpp"
 #include "support/random_points.hpp"
 
+#include <echinus/collider.hpp>
 #include <echinus/exact_map.hpp>
 
 #include <gtest/gtest.h>
@@ -8,6 +9,8 @@
 #include <cmath>
 #include <limits>
 #include <random>
+#include <variant>
+#include <vector>
 
 using namespace echinus;
 
@@ -287,5 +290,41 @@ TEST(ExactCrossings, OfAClosedSurfaceAddUp) {
         ASSERT_LE(std::abs(before + beyond), 1) << "case " << n;
         ASSERT_LE(std::abs(beyond), 1) << "case " << n;
         ASSERT_EQ(beyond + crossed, winding_to) << "case " << n;
+    }
+}
+
+TEST(ExactMapSweep, AnswersInBatchesAsOneByOneOnAnyNumberOfThreads) {
+    TriangleMesh open = make_torus(1, 0.4, 24, 12);
+    open.faces.resize(open.faces.size() - 40);
+    const Collider collider{.map = ExactMap::build(open), .pose = {Rotation::about({1, 2, 3}, 1), {1, 0, 0}}};
+    const ExactMap& map = std::get<ExactMap>(collider.map.kind);
+    const RigidTransform before{Rotation::about({1, 2, 3}, 0.9), {1, 0.1, 0}};
+    constexpr std::size_t kCount = 33'000; // so many that threads share them
+    test::Random random(42);
+    std::vector<Vec3f> points;
+    for (std::size_t i = 0; i < 2 * kCount; ++i) points.push_back(test::in_cube(random, 1.5F));
+    const StridedSpan<const Vec3f> all(points), from = all.subspan(0, kCount),
+                                                to = all.subspan(kCount, kCount);
+    for (const unsigned thread_count : {1U, 2U}) {
+        std::vector<SweepHit> hits(kCount), hits_in_world(kCount);
+        std::vector<Containment> answers(kCount);
+        std::vector<std::uint8_t> inside(kCount);
+        std::vector<Contact> contacts(kCount);
+        sweep_batch(map, from, to, hits, thread_count);
+        classify_batch(map, from, answers, thread_count);
+        sweep_batch(collider, before, from, to, hits_in_world, thread_count);
+        contains_batch(collider, from, inside, thread_count);
+        contacts_batch(collider, from, 0.2F, contacts, thread_count);
+        for (std::size_t i = 0; i < kCount; i += 37) {
+            const SweepHit hit = sweep(map, from[i], to[i]);
+            EXPECT_EQ(hits[i].face, hit.face) << i;
+            EXPECT_EQ(hits[i].point, hit.point) << i;
+            const Containment answer = classify(map, from[i]);
+            EXPECT_EQ(answers[i].inside, answer.inside) << i;
+            EXPECT_EQ(answers[i].certain, answer.certain) << i;
+            EXPECT_EQ(hits_in_world[i].point, sweep(collider, before, from[i], to[i]).point) << i;
+            EXPECT_EQ(inside[i] != 0, contains(collider, from[i])) << i;
+            EXPECT_EQ(contacts[i].point, contact(collider, from[i], 0.2F).point) << i;
+        }
     }
 }

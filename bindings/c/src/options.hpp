@@ -191,8 +191,10 @@ requires std::same_as<std::remove_const_t<C>, echinus_simulation_options> &&
     std::same_as<std::remove_const_t<Options>, SimulationOptions>
 void for_each_option(C& c, Options& o, const Use& use) {
     SolverKind kind = o.kind();
-    auto newton = o.kind() == SolverKind::Newton ? o.newton() : NewtonOptions{};
-    auto jakobsen = o.kind() == SolverKind::Jakobsen ? o.jakobsen() : JakobsenOptions{};
+    NewtonOptions newton;
+    if (const auto* held = std::get_if<NewtonOptions>(&o.solver)) newton = *held;
+    JakobsenOptions jakobsen;
+    if (const auto* held = std::get_if<JakobsenOptions>(&o.solver)) jakobsen = *held;
     use("time_step", c.time_step, o.time_step, Limits{1e-9, 1e9});
     use("solver", c.solver, kind, SolverKind::Jakobsen);
     use("iteration_count", c.iteration_count, jakobsen.iteration_count, Limits{1, 1e6});

@@ -35,35 +35,36 @@ using namespace echinus;
 using namespace echinus::c;
 
 echinus_status echinus_map_intersects(const echinus_map* map, const float* triangles, size_t count,
-                                      size_t stride, uint8_t* intersecting) {
+                                      size_t stride, uint32_t thread_count, uint8_t* intersecting) {
     return guarded(__func__, [&] {
         const ExactMapView& view = exact_map_at(map).view();
         const auto batch = batch_at<TrianglePoints>(triangles, count, stride, "triangles");
         const std::span<uint8_t> answers = values_at(intersecting, count, "intersecting");
-        for (std::size_t i = 0; i < count; ++i) answers[i] = intersects(view, batch[i]) ? 1 : 0;
+        intersects_batch(view, batch, answers, thread_count);
     });
 }
 
 echinus_status echinus_map_clearance(const echinus_map* map, const float* triangles, size_t count,
-                                     size_t stride, float farthest, echinus_clearance* clearances) {
+                                     size_t stride, float farthest, uint32_t thread_count,
+                                     echinus_clearance* clearances) {
     return guarded(__func__, [&] {
         const ExactMapView& view = exact_map_at(map).view();
         not_negative(farthest, "farthest");
         const auto batch = batch_at<TrianglePoints>(triangles, count, stride, "triangles");
         const auto answers = values_at(reinterpret_cast<Clearance*>(clearances), count, "clearances");
-        for (std::size_t i = 0; i < count; ++i) answers[i] = clearance(view, batch[i], farthest);
+        clearance_batch(view, batch, farthest, answers, thread_count);
     });
 }
 
 echinus_status echinus_map_sweep_triangles(const echinus_map* map, const float* from, size_t from_stride,
                                            const float* to, size_t to_stride, size_t count,
-                                           echinus_triangle_sweep_hit* hits) {
+                                           uint32_t thread_count, echinus_triangle_sweep_hit* hits) {
     return guarded(__func__, [&] {
         const ExactMapView& view = exact_map_at(map).view();
         const auto starts = batch_at<TrianglePoints>(from, count, from_stride, "from");
         const auto ends = batch_at<TrianglePoints>(to, count, to_stride, "to");
         const auto found = values_at(reinterpret_cast<TriangleSweepHit*>(hits), count, "hits");
-        for (std::size_t i = 0; i < count; ++i) found[i] = sweep(view, starts[i], ends[i]);
+        sweep_batch(view, starts, ends, found, thread_count);
     });
 }
 

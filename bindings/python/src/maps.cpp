@@ -138,10 +138,8 @@ py::array sweep_points(const ExactMap& map, const py::object& start, const py::o
     py::array result = new_array(hit_type(), from.shape());
     const std::span<SweepHit> hits = elements_of<SweepHit>(result);
     in_pieces(from.size(), [&](std::size_t first, std::size_t count) {
-        for_each_piece(count, workers, [&](std::size_t begin, std::size_t past) {
-            for (std::size_t i = first + begin; i < first + past; ++i)
-                hits[i] = sweep(map.view(), from.span()[i], to.span()[i]);
-        });
+        sweep_batch(map.view(), from.span().subspan(first, count), to.span().subspan(first, count),
+                    hits.subspan(first, count), workers);
     });
     return result;
 }

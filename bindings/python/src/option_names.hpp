@@ -104,8 +104,10 @@ template <typename Options, typename Use>
 requires std::same_as<std::remove_const_t<Options>, SimulationOptions>
 void for_each_option(Options& o, const Use& use) {
     SolverKind kind = o.kind();
-    auto newton = o.kind() == SolverKind::Newton ? o.newton() : NewtonOptions{};
-    auto jakobsen = o.kind() == SolverKind::Jakobsen ? o.jakobsen() : JakobsenOptions{};
+    NewtonOptions newton;
+    if (const auto* held = std::get_if<NewtonOptions>(&o.solver)) newton = *held;
+    JakobsenOptions jakobsen;
+    if (const auto* held = std::get_if<JakobsenOptions>(&o.solver)) jakobsen = *held;
     use("time_step", o.time_step);
     use("solver", kind, {"newton", "jakobsen"});
     use("iteration_count", jakobsen.iteration_count);

@@ -117,7 +117,7 @@ export class ExactMap extends Map {
     classify(point) {
         const { core } = this;
         const place = writePoints(core, requirePoint(point, 'the point'));
-        core.do('echinus_map_classify', this.address, place, 1, 0, place + RESULT, place + RESULT + 1);
+        core.do('echinus_map_classify', this.address, place, 1, 0, 1, place + RESULT, place + RESULT + 1);
         const { bytes } = core.views;
         return { inside: bytes[place + RESULT] !== 0, certain: bytes[place + RESULT + 1] !== 0 };
     }
@@ -125,7 +125,7 @@ export class ExactMap extends Map {
     sweep(from, to) {
         const { core } = this;
         const place = writePoints(core, requirePoint(from, 'the beginning of the way'), requirePoint(to, 'the end of the way'));
-        core.do('echinus_map_sweep', this.address, place, 0, place + POINT, 0, 1, place + RESULT);
+        core.do('echinus_map_sweep', this.address, place, 0, place + POINT, 0, 1, 1, place + RESULT);
         const { floats, ints, bytes } = core.views;
         const f = (place + RESULT) >>> 2;
         const face = ints[f + HIT.face / 4];

@@ -172,14 +172,14 @@ export class Simulation extends Handle {
         const flags = requireOwn(this.core, inside, FlagBuffer);
         requireWithin(this.particleCount, inside.length, 'answers');
         this.#withCollider(0, (first) =>
-            this.core.do('echinus_collider_contains', first, this.core.call('echinus_simulation_positions', this.address), this.particleCount, 0, flags));
+            this.core.do('echinus_collider_contains', first, this.core.call('echinus_simulation_positions', this.address), this.particleCount, 0, 1, flags));
         return inside;
     }
     contactsBatch(margin, contacts) {
         const results = requireOwn(this.core, contacts, ContactBuffer);
         requireWithin(this.particleCount, contacts.length, 'contacts');
         this.#withCollider(0, (first) =>
-            this.core.do('echinus_collider_contacts', first, this.core.call('echinus_simulation_positions', this.address), this.particleCount, 0, margin, results));
+            this.core.do('echinus_collider_contacts', first, this.core.call('echinus_simulation_positions', this.address), this.particleCount, 0, margin, 1, results));
         return contacts;
     }
 }

@@ -7,13 +7,13 @@
 #include "distance_map/interpolation.hpp"
 #include "distance_map/query/grid_kernels.hpp"
 #include "geometry/parallel.hpp"
+#include "geometry/precondition.hpp"
 #include "simd/dispatch.hpp"
 
 #include <echinus/distance_map.hpp>
 
 #include <algorithm>
 #include <array>
-#include <cassert>
 #include <optional>
 
 namespace echinus {
@@ -203,7 +203,9 @@ Contact contact(const DistanceMapView& map, Vec3f point_local, float margin) noe
 
 void contains_batch(const DistanceMapView& map, StridedSpan<const Vec3f> points_local,
                     std::span<std::uint8_t> inside, unsigned thread_count) noexcept {
-    assert(points_local.size() == inside.size());
+    if (!meets(points_local.size() == inside.size(),
+               "contains_batch: there are not as many inside as points"))
+        return;
     const bool by_kernel = use_kernels() && kernels_read(map);
     for_each_piece(inside.size(), thread_count, [&](std::size_t begin, std::size_t end) {
         const std::size_t size = end - begin;
@@ -215,7 +217,9 @@ void contains_batch(const DistanceMapView& map, StridedSpan<const Vec3f> points_
 
 void contacts_batch(const DistanceMapView& map, StridedSpan<const Vec3f> points_local, float margin,
                     std::span<Contact> contacts, unsigned thread_count) noexcept {
-    assert(points_local.size() == contacts.size());
+    if (!meets(points_local.size() == contacts.size(),
+               "contacts_batch: there are not as many contacts as points"))
+        return;
     const bool by_kernel = use_kernels() && kernels_read(map);
     for_each_piece(contacts.size(), thread_count, [&](std::size_t begin, std::size_t end) {
         const std::size_t size = end - begin;

@@ -5,6 +5,7 @@
 #include "exact_map/query/nearest.hpp"
 #include "exact_map/query/triangle_distance.hpp"
 #include "geometry/parallel.hpp"
+#include "geometry/precondition.hpp"
 #include "geometry/whole_numbers.hpp"
 #include "mesh/simplices_meet.hpp"
 #include "simd/dispatch.hpp"
@@ -358,6 +359,39 @@ TriangleSweepHit sweep(const ExactMapView& map, const TrianglePoints& from_local
     const auto first = first_face(map, moving, fraction, tolerance);
     if (!first) return {};
     return {.fraction = rounded_down(first->fraction), .face = number_of(map, first->face)};
+}
+
+void intersects_batch(const ExactMapView& map, StridedSpan<const TrianglePoints> triangles_local,
+                      std::span<std::uint8_t> intersecting, unsigned thread_count) noexcept {
+    if (!meets(triangles_local.size() == intersecting.size(),
+               "intersects_batch: there are not as many answers as triangles"))
+        return;
+    for_each_piece(intersecting.size(), thread_count, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i)
+            intersecting[i] = intersects(map, triangles_local[i]) ? 1 : 0;
+    });
+}
+
+void clearance_batch(const ExactMapView& map, StridedSpan<const TrianglePoints> triangles_local,
+                     float farthest, std::span<Clearance> clearances, unsigned thread_count) noexcept {
+    if (!meets(triangles_local.size() == clearances.size(),
+               "clearance_batch: there are not as many clearances as triangles"))
+        return;
+    for_each_piece(clearances.size(), thread_count, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i)
+            clearances[i] = clearance(map, triangles_local[i], farthest);
+    });
+}
+
+void sweep_batch(const ExactMapView& map, StridedSpan<const TrianglePoints> from_local,
+                 StridedSpan<const TrianglePoints> to_local, std::span<TriangleSweepHit> hits,
+                 unsigned thread_count) noexcept {
+    if (!meets(from_local.size() == hits.size() && to_local.size() == hits.size(),
+               "sweep_batch: starts, ends and hits differ in number"))
+        return;
+    for_each_piece(hits.size(), thread_count, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) hits[i] = sweep(map, from_local[i], to_local[i]);
+    });
 }
 
 void faces_within_batch(const ExactMapView& map, StridedSpan<const Vec3f> vertices_local,

@@ -5,6 +5,8 @@
 #include "exact_map/query/nearest.hpp"
 #include "exact_map/query/ray_crossing.hpp"
 #include "exact_map/query/winding.hpp"
+#include "geometry/parallel.hpp"
+#include "geometry/precondition.hpp"
 #include "geometry/whole_numbers.hpp"
 
 #include <echinus/exact_map.hpp>
@@ -199,6 +201,17 @@ SweepHit sweep(const ExactMapView& map, Vec3f from_local, Vec3f to_local) noexce
     hit.face = kept_as<std::int32_t>(map.face_numbers[first->face]);
     hit.entering = inside_after && !inside_before;
     return hit;
+}
+
+void sweep_batch(const ExactMapView& map, StridedSpan<const Vec3f> from_local,
+                 StridedSpan<const Vec3f> to_local, std::span<SweepHit> hits,
+                 unsigned thread_count) noexcept {
+    if (!meets(from_local.size() == hits.size() && to_local.size() == hits.size(),
+               "sweep_batch: starts, ends and hits differ in number"))
+        return;
+    for_each_piece(hits.size(), thread_count, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) hits[i] = sweep(map, from_local[i], to_local[i]);
+    });
 }
 
 } // namespace echinus

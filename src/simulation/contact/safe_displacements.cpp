@@ -55,7 +55,7 @@ SafeDisplacements::Plane SafeDisplacements::plane_between(const ContactSide& sid
     const auto plane_along = [&](const Vec3f& normal, float gap) {
         return Plane{normal, room_of(side, gap), side.closing_of(pair, normal)};
     };
-    // What touches has no plane between: it is counted, and not pushed.
+    // A pair that touches has no plane between: it is counted, and not pushed.
     if (!(apart.gap > 0)) return {apart.normal, 0, 0};
     Plane best = plane_along(apart.normal, apart.gap);
     if (best.left() >= 0) return best;

@@ -12,9 +12,10 @@
 
 namespace echinus {
 
-/// What is known of the surface around each particle since the map was asked last: a ball without surface,
-/// and a contact plane where one was near. As long as a particle stays in the ball, at its distance from the
-/// surface, the map need not be asked again: the distance changes by no more than the particle moves.
+/// The knowledge about the surface around each particle since the last query of the map: a ball without
+/// surface, and a contact plane where one was near. As long as a particle stays in the ball, at its distance
+/// from the surface, the map need not be asked again: the distance changes by no more than the particle
+/// moves.
 ///
 /// Kept in the body frame, and for the present frame in the world.
 struct KnownContacts {

@@ -16,8 +16,8 @@ namespace echinus {
 /// First the pose, then the motion.
 RigidTransform after(const RigidTransform& motion, const RigidTransform& pose);
 
-/// What leads the colliders of a simulation: constant velocities, a pose for the next frame, or keys. All
-/// become velocities for a frame.
+/// The prescribed motions of the colliders of a simulation: constant velocities, a pose for the next frame,
+/// or keys. All become velocities for a frame.
 class ColliderMotions {
   public:
     explicit ColliderMotions(std::size_t collider_count) : motions_(collider_count) {}

@@ -19,29 +19,31 @@ void require_ranges(const SoftBodyOptions& o) {
 }
 
 void require_ranges(const SimulationOptions& o) {
-    const auto newton = o.kind() == SolverKind::Newton ? o.newton() : NewtonOptions{};
-    const auto jakobsen = o.kind() == SolverKind::Jakobsen ? o.jakobsen() : JakobsenOptions{};
     require_within("simulation option time_step", o.time_step, 1e-9, 1e9);
-    require_within("simulation option iteration_count", jakobsen.iteration_count, 1, 1e6);
-    require_within("simulation option newton_step_count", newton.step_count, 1, 1000);
     require_within("simulation option rest.frame_count", o.rest.frame_count, 1, 1e9);
     require_within("simulation option rest.distance", o.rest.distance, 0, 1e9);
     require_within("simulation option rest.speed", o.rest.speed, 0, std::numeric_limits<double>::infinity());
-    require_within("simulation option drag", jakobsen.drag, 0, 1);
-    require_within("simulation option stiffness", jakobsen.stiffness, 0, 1.99);
     require_within("simulation option thickness", o.thickness, 0, 1e9);
-    require_within("simulation option self_thickness", newton.self_thickness, 0, 1e9);
     require_within("simulation option friction", o.friction, 0, 1e9);
     require_within("simulation option bound", o.bound, 0, 1e30);
-    require_within("simulation option density", newton.material.density, 1e-6, 1e6);
-    require_within("simulation option stretch_stiffness", newton.material.stretch_stiffness, 1e-6, 1e9);
-    require_within("simulation option shear_stiffness", newton.material.shear_stiffness, 0, 1e9);
-    require_within("simulation option bending_stiffness", newton.material.bending_stiffness, 0, 1e6);
-    require_within("simulation option damping", newton.material.damping, 0, 1e6);
-    require_within("simulation option newton_tolerance", newton.tolerance, 0, 1);
-    require_within("simulation option air_drag", newton.air_drag, 0, 1e6);
     require_within("simulation option wind_rate", o.wind_rate, 0, 1e9);
-    require_within("simulation option pressure", newton.pressure, 0, 1e9);
+    if (const auto* own = std::get_if<NewtonOptions>(&o.solver)) {
+        require_within("simulation option newton_step_count", own->step_count, 1, 1000);
+        require_within("simulation option self_thickness", own->self_thickness, 0, 1e9);
+        require_within("simulation option density", own->material.density, 1e-6, 1e6);
+        require_within("simulation option stretch_stiffness", own->material.stretch_stiffness, 1e-6, 1e9);
+        require_within("simulation option shear_stiffness", own->material.shear_stiffness, 0, 1e9);
+        require_within("simulation option bending_stiffness", own->material.bending_stiffness, 0, 1e6);
+        require_within("simulation option damping", own->material.damping, 0, 1e6);
+        require_within("simulation option newton_tolerance", own->tolerance, 0, 1);
+        require_within("simulation option air_drag", own->air_drag, 0, 1e6);
+        require_within("simulation option pressure", own->pressure, 0, 1e9);
+    }
+    if (const auto* own = std::get_if<JakobsenOptions>(&o.solver)) {
+        require_within("simulation option iteration_count", own->iteration_count, 1, 1e6);
+        require_within("simulation option drag", own->drag, 0, 1);
+        require_within("simulation option stiffness", own->stiffness, 0, 1.99);
+    }
 }
 
 void require_ranges(const ParticleCollisionOptions& o) {

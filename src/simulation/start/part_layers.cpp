@@ -119,7 +119,7 @@ class LayerAttempt {
         return steps;
     }
 
-    /// What hangs together among the elements that intersect.
+    /// The connected groups of the elements that intersect.
     UnionFind layers_of(const std::vector<FacePair>& pairs) const {
         UnionFind layers(positions_.size());
         for (const auto& pair : pairs)

@@ -1,4 +1,4 @@
-// What belongs to the state of a simulation: all that a frame reads before it writes it.
+// The state of a simulation: everything that a frame reads before it writes it.
 
 #include "simulation/solver.hpp"
 

@@ -11,7 +11,7 @@
 
 namespace echinus {
 
-/// What may meet: the first belongs to the deformable, the second to its opponent.
+/// The two elements that may meet: the first belongs to the deformable, the second to its opponent.
 enum class PairKind : std::uint8_t { VertexFace, FaceVertex, EdgeEdge };
 
 /// Vertices of the deformable's part of a pair. Of the opponent's there are 4 less.

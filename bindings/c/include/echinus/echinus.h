@@ -572,12 +572,13 @@ typedef struct echinus_contact {
 ECHINUS_API echinus_status echinus_map_contains(const echinus_map* map, const float* points, size_t count,
                                                 size_t stride, uint32_t thread_count, uint8_t* inside);
 
-/// Decides which points are inside, and whether that is certain, one point after the other on one thread.
+/// Decides which points are inside, and whether that is certain.
 /// @param inside   [count] out
 /// @param certain  [count] out: 0 where the mesh is open and its winding number is within 0.1 of the
 /// threshold
 ECHINUS_API echinus_status echinus_map_classify(const echinus_map* map, const float* points, size_t count,
-                                                size_t stride, uint8_t* inside, uint8_t* certain);
+                                                size_t stride, uint32_t thread_count, uint8_t* inside,
+                                                uint8_t* certain);
 
 /// Finds contacts: whether points are inside, how deep, and where the push-out leads.
 /// @param margin    points outside also get a contact if the surface is at most this far away; not negative
@@ -617,7 +618,7 @@ typedef struct echinus_sweep_hit {
 /// @param hits  [count] out
 ECHINUS_API echinus_status echinus_map_sweep(const echinus_map* map, const float* from, size_t from_stride,
                                              const float* to, size_t to_stride, size_t count,
-                                             echinus_sweep_hit* hits);
+                                             uint32_t thread_count, echinus_sweep_hit* hits);
 
 // ---- Triangles against the surface of an exact map, in the local frame ----
 //
@@ -628,7 +629,8 @@ ECHINUS_API echinus_status echinus_map_sweep(const echinus_map* map, const float
 /// Decides which triangles have a point in common with the surface.
 /// @param intersecting  [count] out: 0 or 1
 ECHINUS_API echinus_status echinus_map_intersects(const echinus_map* map, const float* triangles,
-                                                  size_t count, size_t stride, uint8_t* intersecting);
+                                                  size_t count, size_t stride, uint32_t thread_count,
+                                                  uint8_t* intersecting);
 
 typedef struct echinus_clearance {
     float distance; ///< a lower bound of the distance
@@ -639,7 +641,7 @@ typedef struct echinus_clearance {
 /// @param farthest    the search distance; not negative, may be infinite
 /// @param clearances  [count] out
 ECHINUS_API echinus_status echinus_map_clearance(const echinus_map* map, const float* triangles, size_t count,
-                                                 size_t stride, float farthest,
+                                                 size_t stride, float farthest, uint32_t thread_count,
                                                  echinus_clearance* clearances);
 
 typedef struct echinus_triangle_sweep_hit {
@@ -652,7 +654,8 @@ typedef struct echinus_triangle_sweep_hit {
 /// @param hits  [count] out
 ECHINUS_API echinus_status echinus_map_sweep_triangles(const echinus_map* map, const float* from,
                                                        size_t from_stride, const float* to, size_t to_stride,
-                                                       size_t count, echinus_triangle_sweep_hit* hits);
+                                                       size_t count, uint32_t thread_count,
+                                                       echinus_triangle_sweep_hit* hits);
 
 /// Finds the faces within reach of each triangle of a mesh.
 /// @param triangles  [3 triangle_count] vertex indices
@@ -692,14 +695,15 @@ typedef struct echinus_collider {
 /// Fills in a collider at rest in the map's own frame.
 ECHINUS_API void echinus_collider_init(echinus_collider* collider, size_t size, const echinus_map* map);
 
-/// Like echinus_map_contains(), in the world, on one thread, for maps of every kind.
+/// Like echinus_map_contains(), in the world, for maps of every kind.
 ECHINUS_API echinus_status echinus_collider_contains(const echinus_collider* collider, const float* points,
-                                                     size_t count, size_t stride, uint8_t* inside);
+                                                     size_t count, size_t stride, uint32_t thread_count,
+                                                     uint8_t* inside);
 
-/// Like echinus_map_contacts(), in the world, on one thread, for maps of every kind.
+/// Like echinus_map_contacts(), in the world, for maps of every kind.
 ECHINUS_API echinus_status echinus_collider_contacts(const echinus_collider* collider, const float* points,
                                                      size_t count, size_t stride, float margin,
-                                                     echinus_contact* contacts);
+                                                     uint32_t thread_count, echinus_contact* contacts);
 
 /// Finds where moving particles first meet a collider that moves from its previous pose to its present one.
 /// `point` is the present position of the surface point that was met. Distance maps and custom maps have no
@@ -707,7 +711,8 @@ ECHINUS_API echinus_status echinus_collider_contacts(const echinus_collider* col
 ECHINUS_API echinus_status echinus_collider_sweep(const echinus_collider* collider,
                                                   const echinus_pose* previous, const float* from,
                                                   size_t from_stride, const float* to, size_t to_stride,
-                                                  size_t count, echinus_sweep_hit* hits);
+                                                  size_t count, uint32_t thread_count,
+                                                  echinus_sweep_hit* hits);
 
 /// The velocity of the collider's material at a point, units per second.
 /// @param point     [3]
