@@ -294,11 +294,10 @@ class ExactMapBuilder {
     ExactMapBuilder& operator=(ExactMapBuilder&&) noexcept;
 
     /// Builds the map of the faces with these vertices, bit-identical to that of ExactMap::build(). Centre,
-    /// radius, lattice and resolution are recomputed. The builder owns the map. A copy of the map keeps its
-    /// arrays; without a copy the next rebuild() overwrites the same memory, and views of the old map become
-    /// invalid.
-    /// @throws Error as ExactMap::build() does; the builder then has no map and can be used again
-    const ExactMap& rebuild(std::span<const Vec3f> vertices);
+    /// radius, lattice and resolution are recomputed. The memory of the previous map is used again unless
+    /// that map or a copy of it still exists.
+    /// @throws Error as ExactMap::build() does; the builder can be used again
+    [[nodiscard]] ExactMap rebuild(std::span<const Vec3f> vertices);
 
   private:
     struct Memory;

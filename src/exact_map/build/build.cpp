@@ -339,7 +339,6 @@ struct ExactMapBuilder::Memory {
 
     std::vector<Triangle> faces;
     MapMaker maker;
-    std::optional<ExactMap> map;
 };
 
 ExactMapBuilder::ExactMapBuilder(std::vector<Triangle> faces, const ExactMapOptions& options) {
@@ -350,9 +349,8 @@ ExactMapBuilder::~ExactMapBuilder() = default;
 ExactMapBuilder::ExactMapBuilder(ExactMapBuilder&&) noexcept = default;
 ExactMapBuilder& ExactMapBuilder::operator=(ExactMapBuilder&&) noexcept = default;
 
-const ExactMap& ExactMapBuilder::rebuild(std::span<const Vec3f> vertices) {
-    memory_->map.reset(); // which releases the arrays, unless a copy holds them
-    return memory_->map.emplace(memory_->maker.make(vertices));
+ExactMap ExactMapBuilder::rebuild(std::span<const Vec3f> vertices) {
+    return memory_->maker.make(vertices);
 }
 
 ExactMap::ExactMap(const ExactMapView& view, const ExactMapStatistics& statistics, std::uint64_t source_hash,
