@@ -23,24 +23,24 @@ ECHINUS_EXPORT_BEGIN
 /// Simulation of deformable models, cloth and soft bodies. The default solver treats them as continuous
 /// materials in implicit steps, with contact and friction in the same energy (docs/mechanics.md). The other
 /// solver is that of the paper's simulations (section 2.3), after Jakobsen, "Advanced Character Physics" (GDC
-/// 2001): particles are moved by Verlet integration, distance constraints (*sticks*) between them are relaxed
-/// one after the other, and each relaxation includes collision with rigid models.
+/// 2001): particles are moved by Verlet integration, distance constraints (*constraints*) between them are
+/// relaxed one after the other, and each relaxation includes collision with rigid models.
 namespace echinus {
 
 /// The purpose of a distance constraint; each kind has its own stiffness.
-enum class StickKind : std::uint8_t {
+enum class ConstraintKind : std::uint8_t {
     Structural, ///< between neighbours in a row or column: resists stretching
     Shear,      ///< between neighbours along a diagonal: resists shear
     Bending,    ///< between every second particle in a row or column: resists bending
 };
-inline constexpr std::size_t kStickKindCount = 3;
+inline constexpr std::size_t kConstraintKindCount = 3;
 
 /// A distance constraint, which pulls or pushes two particles to the distance `rest_length`. The paper calls
-/// it a stick.
-struct Stick {
+/// it a constraint.
+struct DistanceConstraint {
     std::uint32_t a, b;
     float rest_length; ///< not negative
-    StickKind kind;
+    ConstraintKind kind;
 };
 
 /// Fixes a particle to a collider: it moves rigidly with the collider from its initial position.
@@ -80,7 +80,7 @@ struct Deformable {
     std::vector<float> inverse_masses;
     /// The distance constraints, in the order in which Jakobsen relaxes them. Newton uses only structural
     /// constraints that are not edges of faces: threads.
-    std::vector<Stick> sticks;
+    std::vector<DistanceConstraint> constraints;
     std::vector<Triangle> faces;           ///< for Newton's cloth, rendering, wind and surface collision
     std::vector<Attachment> attachments{}; ///< of pinned particles, at most one for each
     /// The elements of soft bodies. A particle of theirs that is in no face is an interior particle and does
@@ -245,9 +245,9 @@ struct JakobsenOptions {
     /// relaxations take longer and leave less stretch.
     std::uint32_t iteration_count = 10;
     double drag = 0.005; ///< share of the velocity that is lost per frame, 0 to 1
-    /// Share of a constraint's error that one relaxation removes, by StickKind. 1 removes all of it; a value
-    /// between 1 and 2 overshoots, which propagates tension farther per relaxation.
-    std::array<double, kStickKindCount> stiffness{1, 1, 0.3};
+    /// Share of a constraint's error that one relaxation removes, by ConstraintKind. 1 removes all of it; a
+    /// value between 1 and 2 overshoots, which propagates tension farther per relaxation.
+    std::array<double, kConstraintKindCount> stiffness{1, 1, 0.3};
     /// If false, no particle is rescued; those that cross the surface of an exact map are counted as lost and
     /// stay there. This only serves to demonstrate the effect of the proof at the end of a frame.
     bool keep_free = true;
@@ -352,7 +352,7 @@ struct SimulationProfile {
     /// or colliders left no room between them. While it is 0, no faces intersect at the end of a frame,
     /// except by rounding hundreds of a collider's radii away from the origin, which is not counted
     /// (docs/limits.md).
-    std::uint64_t squeezed_count = 0;
+    std::uint64_t unresolved_count = 0;
 };
 
 /// The relative deviation of structural constraints from their rest lengths; 0.01 is 1 %. With Jakobsen it is
@@ -399,7 +399,7 @@ class Simulation {
     /// Computes one frame. Newton: colliders advance by their velocities and carry along nearby particles;
     /// then the energy is minimised, and every step towards the minimum is limited so that faces stay apart:
     /// when a frame ends, no face intersects a collider or, with CollisionMode::SurfacesAndSelf, another
-    /// face. docs/limits.md lists the limits; squeezed_count counts most of the cases in which they were
+    /// face. docs/limits.md lists the limits; unresolved_count counts most of the cases in which they were
     /// exceeded. A frame in which a collider moves far, or nothing finds room to move, is divided into up to
     /// 64 substeps. Memory is kept from frame to frame: a frame that needs no more than the previous ones
     /// allocates nothing, except for the maps of deforming colliders.

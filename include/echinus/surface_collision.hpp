@@ -87,7 +87,7 @@ class SurfaceCollision {
     const std::vector<Vec3f>& positions() const;
     const std::vector<Collider>& colliders() const;
     /// Unresolved pairs of elements, for which no free space was proven, summed over all steps:
-    /// SimulationProfile::squeezed_count.
+    /// SimulationProfile::unresolved_count.
     std::uint64_t unresolved_count() const;
 
   private:

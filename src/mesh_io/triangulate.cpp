@@ -78,8 +78,9 @@ bool Outline::is_strictly_convex() const {
     return true;
 }
 
-/// The corner sticks out and no other one lies in the triangle that its removal would cut off. Corners at the
-/// same place as one of the triangle's are no obstacle: a slit that leads to a hole passes each place twice.
+/// The corner constraints out and no other one lies in the triangle that its removal would cut off. Corners
+/// at the same place as one of the triangle's are no obstacle: a slit that leads to a hole passes each place
+/// twice.
 bool Outline::is_ear(std::uint32_t i) const {
     if (!(turn_at(i) > 0)) return false;
     const Point& a = points_[previous_[i]];

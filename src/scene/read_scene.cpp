@@ -26,7 +26,7 @@ constexpr Range kTime{-1e9, 1e9};
 constexpr Range kMass{1e-9, 1e15};
 /// Of the square of a quaternion's length.
 constexpr double kUnitTolerance = 1e-4;
-/// Unless a scene says otherwise: its sticks need a smaller one than the options have.
+/// Unless a scene says otherwise: its constraints need a smaller one than the options have.
 constexpr double kJakobsenTimeStep = 1.0 / 240;
 constexpr double kRadiansPerDegree = std::numbers::pi / 180;
 

@@ -96,21 +96,22 @@ class Weigher {
         for (const auto& [ends, sides] : edges) edges_.push_back(ends);
     }
 
-    /// Structural sticks that are no edges of faces. They weigh as much as strips of cloth.
+    /// Structural constraints that are no edges of faces. They weigh as much as strips of cloth.
     void add_threads() {
         double sum = edge_lengths_;
         std::size_t count = edge_count_;
-        std::vector<Stick> threads;
-        for (const Stick& stick : deformable_.sticks) {
-            if (stick.kind != StickKind::Structural || !(stick.rest_length > 0)) continue;
-            const std::array<std::uint32_t, 2> ends{std::min(stick.a, stick.b), std::max(stick.a, stick.b)};
+        std::vector<DistanceConstraint> threads;
+        for (const DistanceConstraint& constraint : deformable_.constraints) {
+            if (constraint.kind != ConstraintKind::Structural || !(constraint.rest_length > 0)) continue;
+            const std::array<std::uint32_t, 2> ends{std::min(constraint.a, constraint.b),
+                                                    std::max(constraint.a, constraint.b)};
             if (std::binary_search(edges_.begin(), edges_.end(), ends)) continue;
-            threads.push_back(stick);
-            sum += double{stick.rest_length};
+            threads.push_back(constraint);
+            sum += double{constraint.rest_length};
             ++count;
         }
         const double width = count > 0 ? sum / static_cast<double>(count) : 0;
-        for (const Stick& thread : threads) {
+        for (const DistanceConstraint& thread : threads) {
             const double rest_length = double{thread.rest_length};
             parts_.springs.push_back({thread.a, thread.b, thread.rest_length,
                                       static_cast<float>(material_.stretch_stiffness * width / rest_length),

@@ -157,7 +157,7 @@ void NewtonSolver::step() {
     std::fill(deformations_.begin(), deformations_.end(), Deformation{});
     if (contacts_) {
         contacts_->end_frame();
-        profile.squeezed_count += contacts_->unresolved_count();
+        profile.unresolved_count += contacts_->unresolved_count();
         profile.map_query_count += contacts_->particles().take_query_count();
         profile.lost_count += contacts_->particles().take_lost_count();
     }

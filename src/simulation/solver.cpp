@@ -27,9 +27,9 @@ namespace {
 double default_thickness(const Deformable& deformable) {
     double sum = 0;
     std::size_t count = 0;
-    for (const Stick& stick : deformable.sticks) {
-        if (stick.kind != StickKind::Structural) continue;
-        sum += double{stick.rest_length};
+    for (const DistanceConstraint& constraint : deformable.constraints) {
+        if (constraint.kind != ConstraintKind::Structural) continue;
+        sum += double{constraint.rest_length};
         ++count;
     }
     if (count > 0) return sum / static_cast<double>(count) / 2;
@@ -186,10 +186,11 @@ std::string Solver::name_of_collider(std::size_t collider) const {
 Residual Solver::residual() const {
     double sum = 0, largest = 0;
     std::size_t count = 0;
-    for (const Stick& stick : deformable.sticks) {
-        if (stick.kind != StickKind::Structural || !(stick.rest_length > 0)) continue;
-        const Vec3d across = Vec3d(deformable.positions[stick.b]) - Vec3d(deformable.positions[stick.a]);
-        const double share = std::abs(length(across) / double{stick.rest_length} - 1);
+    for (const DistanceConstraint& constraint : deformable.constraints) {
+        if (constraint.kind != ConstraintKind::Structural || !(constraint.rest_length > 0)) continue;
+        const Vec3d across =
+            Vec3d(deformable.positions[constraint.b]) - Vec3d(deformable.positions[constraint.a]);
+        const double share = std::abs(length(across) / double{constraint.rest_length} - 1);
         sum += share * share;
         largest = std::max(largest, share);
         ++count;

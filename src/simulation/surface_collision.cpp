@@ -44,7 +44,7 @@ Deformable deformable_of(std::vector<Vec3f> positions, std::vector<Triangle> fac
     const std::size_t count = positions.size();
     return {.positions = positions,
             .inverse_masses = std::vector<float>(count, 1),
-            .sticks = {},
+            .constraints = {},
             .faces = std::move(faces)};
 }
 
@@ -167,7 +167,7 @@ const std::vector<Collider>& SurfaceCollision::colliders() const {
     return state_->simulation.colliders();
 }
 std::uint64_t SurfaceCollision::unresolved_count() const {
-    return state_->simulation.profile().squeezed_count;
+    return state_->simulation.profile().unresolved_count;
 }
 
 } // namespace echinus

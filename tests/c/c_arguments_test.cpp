@@ -109,14 +109,14 @@ TEST(CArguments, StridesAreWholeFloatsAndWideEnough) {
 
 TEST(CArguments, ArraysAreNoLargerThanMemory) {
     constexpr std::size_t kMany = std::size_t{1} << 60;
-    const echinus_stick stick{};
+    const echinus_distance_constraint constraint{};
     echinus_deformable_arrays arrays{};
     arrays.size = sizeof arrays;
-    arrays.sticks = &stick;
-    arrays.stick_count = kMany;
+    arrays.constraints = &constraint;
+    arrays.constraint_count = kMany;
     CDeformable deformable;
     expect_refused(echinus_deformable_create(&arrays, out(deformable)), ECHINUS_INVALID_ARGUMENT,
-                   "the count of sticks, 1152921504606846976, is more than memory can hold");
+                   "the count of constraints, 1152921504606846976, is more than memory can hold");
 }
 
 TEST(CArguments, MapsHaveTheKindThatAQueryNeeds) {

@@ -338,17 +338,17 @@ TEST(CDeformables, GoThroughTheirArraysUnchanged) {
     for (int turn = 0; turn < 2; ++turn) {
         expect_ok(echinus_deformable_read((turn == 0 ? cloth : again).get(), &arrays));
         ASSERT_EQ(arrays.particle_count, expected.particle_count());
-        ASSERT_EQ(arrays.stick_count, expected.sticks.size());
+        ASSERT_EQ(arrays.constraint_count, expected.constraints.size());
         ASSERT_EQ(arrays.face_count, expected.faces.size());
         ASSERT_EQ(arrays.attachment_count, 1U);
         EXPECT_EQ(std::memcmp(arrays.positions, expected.positions.data(), 5 * sizeof(Vec3f)), 0);
         EXPECT_EQ(std::memcmp(arrays.inverse_masses, expected.inverse_masses.data(), 5 * sizeof(float)), 0);
         EXPECT_EQ(std::memcmp(arrays.faces, expected.faces.data(), 3 * sizeof(Triangle)), 0);
-        for (std::size_t i = 0; i < expected.sticks.size(); ++i) {
-            EXPECT_EQ(arrays.sticks[i].a, expected.sticks[i].a);
-            EXPECT_EQ(arrays.sticks[i].b, expected.sticks[i].b);
-            EXPECT_EQ(arrays.sticks[i].rest_length, expected.sticks[i].rest_length);
-            EXPECT_EQ(arrays.sticks[i].kind, static_cast<int>(expected.sticks[i].kind));
+        for (std::size_t i = 0; i < expected.constraints.size(); ++i) {
+            EXPECT_EQ(arrays.constraints[i].a, expected.constraints[i].a);
+            EXPECT_EQ(arrays.constraints[i].b, expected.constraints[i].b);
+            EXPECT_EQ(arrays.constraints[i].rest_length, expected.constraints[i].rest_length);
+            EXPECT_EQ(arrays.constraints[i].kind, static_cast<int>(expected.constraints[i].kind));
         }
         if (turn == 0) expect_ok(echinus_deformable_create(&arrays, out(again)));
     }
@@ -356,14 +356,14 @@ TEST(CDeformables, GoThroughTheirArraysUnchanged) {
 
 TEST(CDeformables, BeginAtRestAndWithEqualMassesWhereNothingIsSaid) {
     const float positions[6] = {0, 0, 0, 1, 0, 0};
-    const echinus_stick stick{
-        .a = 0, .b = 1, .rest_length = 1, .kind = ECHINUS_STICK_STRUCTURAL, .reserved = {}};
+    const echinus_distance_constraint constraint{
+        .a = 0, .b = 1, .rest_length = 1, .kind = ECHINUS_CONSTRAINT_STRUCTURAL, .reserved = {}};
     echinus_deformable_arrays arrays{};
     arrays.size = sizeof arrays;
     arrays.particle_count = 2;
     arrays.positions = positions;
-    arrays.sticks = &stick;
-    arrays.stick_count = 1;
+    arrays.constraints = &constraint;
+    arrays.constraint_count = 1;
     CDeformable pair;
     expect_ok(echinus_deformable_create(&arrays, out(pair)));
     CSimulation simulation;
@@ -371,7 +371,7 @@ TEST(CDeformables, BeginAtRestAndWithEqualMassesWhereNothingIsSaid) {
     expect_ok(echinus_simulation_step(simulation.get()));
     Simulation by_cpp({.positions = {{0, 0, 0}, {1, 0, 0}},
                        .inverse_masses = {1, 1},
-                       .sticks = {{0, 1, 1, StickKind::Structural}},
+                       .constraints = {{0, 1, 1, ConstraintKind::Structural}},
                        .faces = {}},
                       {}, {});
     by_cpp.step();
@@ -380,7 +380,7 @@ TEST(CDeformables, BeginAtRestAndWithEqualMassesWhereNothingIsSaid) {
 
 TEST(CDeformables, AreRefusedWhenTheyDoNotFitTogether) {
     const float positions[6] = {};
-    echinus_stick stick{.a = 0, .b = 7, .rest_length = 1, .kind = 0, .reserved = {}};
+    echinus_distance_constraint constraint{.a = 0, .b = 7, .rest_length = 1, .kind = 0, .reserved = {}};
     echinus_deformable_arrays arrays{};
     arrays.size = sizeof arrays;
     arrays.particle_count = 2;
@@ -388,15 +388,15 @@ TEST(CDeformables, AreRefusedWhenTheyDoNotFitTogether) {
     expect_refused(echinus_deformable_create(&arrays, out(deformable)), ECHINUS_INVALID_ARGUMENT,
                    "positions is NULL");
     arrays.positions = positions;
-    arrays.sticks = &stick;
-    arrays.stick_count = 1;
+    arrays.constraints = &constraint;
+    arrays.constraint_count = 1;
     expect_ok(echinus_deformable_create(&arrays, out(deformable)));
     CSimulation simulation;
     expect_refused(echinus_simulation_create(deformable.get(), nullptr, 0, nullptr, out(simulation)),
-                   ECHINUS_INVALID_OPTIONS, "stick");
-    stick.kind = 3;
+                   ECHINUS_INVALID_OPTIONS, "constraint");
+    constraint.kind = 3;
     expect_refused(echinus_deformable_create(&arrays, out(deformable)), ECHINUS_INVALID_ARGUMENT,
-                   "stick 0 is of kind 3");
+                   "constraint 0 is of kind 3");
 }
 
 // ---- Scenes

@@ -177,14 +177,14 @@ TEST(CSoftBodies, PassThroughAColliderAsInCpp) {
 
 TEST(CSoftBodies, PartsNameTheirOwnParticlesOnly) {
     const float positions[6] = {0, 0, 0, 1, 0, 0};
-    const echinus_stick stick{
-        .a = 0, .b = UINT32_MAX, .rest_length = 1, .kind = ECHINUS_STICK_STRUCTURAL, .reserved = {}};
+    const echinus_distance_constraint constraint{
+        .a = 0, .b = UINT32_MAX, .rest_length = 1, .kind = ECHINUS_CONSTRAINT_STRUCTURAL, .reserved = {}};
     echinus_deformable_arrays arrays{};
     arrays.size = sizeof arrays;
     arrays.particle_count = 2;
     arrays.positions = positions;
-    arrays.sticks = &stick;
-    arrays.stick_count = 1;
+    arrays.constraints = &constraint;
+    arrays.constraint_count = 1;
     CDeformable wrong, both;
     expect_ok(echinus_deformable_create(&arrays, out(wrong)));
     const CDeformable right = c_sheet();

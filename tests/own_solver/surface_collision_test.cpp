@@ -162,8 +162,8 @@ TEST(SurfaceCollision, KeepsAThreadOverTheEdgeOfABox) {
     Deformable thread;
     for (int i = 0; i <= 20; ++i) thread.positions.push_back({0.1F * float(i) - 1, 0.013F * float(i), 0.3F});
     for (std::uint32_t i = 0; i < 20; ++i)
-        thread.sticks.push_back(
-            {i, i + 1, length(thread.positions[1] - thread.positions[0]), StickKind::Structural});
+        thread.constraints.push_back(
+            {i, i + 1, length(thread.positions[1] - thread.positions[0]), ConstraintKind::Structural});
     thread.inverse_masses.assign(thread.particle_count(), 1);
     expect_falls_without_meeting(make_box({0.5, 0.5, 0.5}), {}, thread, 75);
 }
@@ -178,10 +178,11 @@ TEST(SurfaceCollision, LeavesASheetOverAThinPostLittleStretched) {
     for (int frame = 0; frame < 40; ++frame) simulation.step();
     const Deformable& sheet = simulation.deformable();
     double largest = 0;
-    for (const Stick& stick : sheet.sticks)
-        if (stick.kind == StickKind::Structural)
-            largest = std::max(largest, double{length(sheet.positions[stick.b] - sheet.positions[stick.a])} /
-                                            stick.rest_length);
+    for (const DistanceConstraint& constraint : sheet.constraints)
+        if (constraint.kind == ConstraintKind::Structural)
+            largest = std::max(largest,
+                               double{length(sheet.positions[constraint.b] - sheet.positions[constraint.a])} /
+                                   constraint.rest_length);
     EXPECT_LT(largest, 1.2);
 }
 
@@ -239,7 +240,7 @@ TEST(SurfaceCollision, LetsASheetFallOnAModelFarFromTheOriginAsNearIt) {
         if (far == 0) at_the_origin = corner;
         EXPECT_NEAR(corner, at_the_origin, 0.003) << far;
         EXPECT_LT(corner, 0.02) << far;
-        EXPECT_EQ(simulation.profile().squeezed_count, 0U);
+        EXPECT_EQ(simulation.profile().unresolved_count, 0U);
     }
 }
 
@@ -328,12 +329,12 @@ TEST(SurfaceCollision, CountsWhatItCannotKeepApart) {
     for (int i = 0; i < 15; ++i) {
         simulation.step();
         frames_with_pairs += meeting_faces(simulation, models).empty() ? 0 : 1;
-        if (frames_with_pairs > 0) ASSERT_GT(simulation.profile().squeezed_count, 0u);
+        if (frames_with_pairs > 0) ASSERT_GT(simulation.profile().unresolved_count, 0u);
     }
     EXPECT_GT(frames_with_pairs, 0u);
 }
 
-TEST(SurfaceCollision, CountsAsSqueezedWhatTwoModelsHavePressedInside) {
+TEST(SurfaceCollision, CountsAsUnresolvedWhatTwoModelsHavePressedInside) {
     const std::vector<TriangleMesh> models{make_box({1, 1, 0.6}), make_box({1, 1, 0.6})};
     std::vector<Collider> colliders = colliders_of(models);
     for (const std::size_t i : {0u, 1u}) {
@@ -350,7 +351,7 @@ TEST(SurfaceCollision, CountsAsSqueezedWhatTwoModelsHavePressedInside) {
         std::uint64_t inside = 0;
         for (const Collider& collider : simulation.colliders())
             for (const Vec3f& p : simulation.positions()) inside += contains(collider, p) ? 1 : 0;
-        if (inside > 0) ASSERT_GT(simulation.profile().squeezed_count, 0u);
+        if (inside > 0) ASSERT_GT(simulation.profile().unresolved_count, 0u);
         most_inside = std::max(most_inside, inside);
         // They overlap by a fifth of a box, and part again.
         if (i == 15)

@@ -94,7 +94,7 @@ def test_the_lines_of_a_file_are_threads(tmp_path: pathlib.Path):
     simulation.step(30)
     ends = simulation.positions
     assert ends.shape == (3, 3) and simulation.faces.shape == (0, 3)
-    assert np.linalg.norm(ends[1] - ends[0]) == pytest.approx(1, abs=0.02), "held by its sticks"
+    assert np.linalg.norm(ends[1] - ends[0]) == pytest.approx(1, abs=0.02), "held by its constraints"
 
 
 def test_a_mesh_may_replace_the_file_of_the_cloth():

@@ -39,7 +39,7 @@ def test_a_soft_body_weighs_what_its_density_and_volume_say():
     free = soft_box(density=500, scale=2)
     assert (1 / free.inverse_masses.astype(float)).sum() == pytest.approx(500 * 0.8**3)
     assert np.allclose(free.positions, BOX.vertices * 2 + [0, 0, 0.25])
-    assert ech.inspect(free.mesh).closed and free.stick_count == 0
+    assert ech.inspect(free.mesh).closed and free.constraint_count == 0
     for array in (free.positions, free.inverse_masses, free.faces, free.tetrahedra):
         assert not array.flags.writeable
 
@@ -47,7 +47,7 @@ def test_a_soft_body_weighs_what_its_density_and_volume_say():
 def test_parts_follow_one_another_in_one_deformable():
     sheet, body = cloth(position=(0, 0, 2)), soft_box()
     both = ech.combine([sheet, ech.with_masses_times(3, body)])
-    assert len(both) == 144 + 64 and both.stick_count == sheet.stick_count
+    assert len(both) == 144 + 64 and both.constraint_count == sheet.constraint_count
     assert np.array_equal(both.faces[len(sheet.faces) :], body.faces + 144)
     assert np.array_equal(both.tetrahedra, body.tetrahedra + 144)
     assert np.allclose(both.inverse_masses[144:] * 3, body.inverse_masses)
@@ -64,7 +64,7 @@ def test_a_cloth_is_made_of_a_mesh_as_of_a_scene():
     assert simulation.state_hash == expected.state_hash
     needle = ech.Mesh(np.concatenate([BALL.vertices, [[0, 0, 1]]]), BALL.faces)
     threaded = ech.make_cloth_of_mesh(needle, threads=[[0, len(BALL.vertices)]], rest_vertices=needle.vertices)
-    assert threaded.stick_count == ech.make_cloth_of_mesh(BALL).stick_count + 1
+    assert threaded.constraint_count == ech.make_cloth_of_mesh(BALL).constraint_count + 1
 
 
 def test_the_defaults_are_those_of_a_scene():
@@ -195,7 +195,7 @@ def test_deformables_and_caches_are_pickled_whole():
     threaded = ech.make_cloth_of_mesh(BALL, position=(0, 0, 1))
     for deformable in (both, threaded, ech.passing_through(0, threaded)):
         again = pickle.loads(pickle.dumps(deformable))
-        assert repr(again) == repr(deformable) and again.stick_count == deformable.stick_count
+        assert repr(again) == repr(deformable) and again.constraint_count == deformable.constraint_count
         runs = [ech.Simulation(d, [BELOW]) for d in (deformable, again)]
         for run in runs:
             run.step(5)

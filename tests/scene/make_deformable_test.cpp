@@ -41,7 +41,7 @@ TEST(SceneMeshCloth, IsMadeOfTheMeshThatTheCallerHasRead) {
         "position": [0, 0, 3], "pins": [0, 4], "velocity": [0, 0, -1])");
     const Deformable cloth = make_cloth(scene, {sheet, smaller});
     EXPECT_EQ(cloth.positions[0], Vec3f(-1, -1, 3));
-    EXPECT_EQ(cloth.sticks[0].rest_length, 0.25F);
+    EXPECT_EQ(cloth.constraints[0].rest_length, 0.25F);
     EXPECT_EQ(cloth.inverse_masses[4], 0);
     const Simulation simulation =
         make_simulation(scene, ExactMap::build(make_box({1, 1, 1})), {sheet, smaller});
@@ -54,7 +54,7 @@ TEST(SceneMeshCloth, MayBeAGeneratedShapeThatNobodyReads) {
     const Deformable bag = make_cloth(scene_with_cloth(
         R"("mesh": {"sphere": {"radius": 0.5, "segments": [12, 8]}}, "position": [0, 0, 2])"));
     EXPECT_EQ(bag.faces, make_sphere(0.5, 12, 8).faces);
-    EXPECT_FALSE(bag.sticks.empty());
+    EXPECT_FALSE(bag.constraints.empty());
 }
 
 TEST(SceneMeshCloth, ChoosesItsVerticesByABoxInTheMeshsOwnCoordinates) {

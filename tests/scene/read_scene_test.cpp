@@ -318,7 +318,7 @@ TEST(Scene, HasTheNewtonSolverAndItsStepUnlessItSaysOtherwise) {
 
 TEST(Scene, OfAnEarlierVersionIsReadWithAWarningForEachKeyThatHasNoEffectAnyMore) {
     const Scene scene = parse_scene(R"({"model": "a", "solver": "xpbd", "substeps": 7, "iterations": 3,
-            "multilevel": true, "time_step": 0.004, "cloth": {"mesh": "b", "bending": "sticks"},
+            "multilevel": true, "time_step": 0.004, "cloth": {"mesh": "b", "bending": "constraints"},
             "material": {"structural": 1, "shear": 0.5, "bending": 0.05, "drag": 0.01, "friction": 0.25,
                          "compliance": {"structural": 1e-7, "any": 0}}})",
                                     "a.json");
@@ -374,7 +374,7 @@ TEST(Scene, TakesTheMaterialOfTheNewtonSolver) {
     EXPECT_EQ(options.newton().material.damping, 0.1);
 }
 
-TEST(Scene, HasSticksAndParticlesOnlyUnderJakobsensSolver) {
+TEST(Scene, HasConstraintsAndParticlesOnlyUnderJakobsensSolver) {
     const auto text = [](const std::string& cloth, const std::string& rest) {
         return R"({"model": "a", "solver": "jakobsen", "cloth": {)" + cloth + "}" + rest + "}";
     };

@@ -16,14 +16,15 @@ using namespace echinus;
 
 namespace {
 
-/// Whether a stick of a kind joins two particles of a sheet, by how far apart they are in columns and rows.
-bool should_join(int columns_apart, int rows_apart, StickKind kind) {
+/// Whether a constraint of a kind joins two particles of a sheet, by how far apart they are in columns and
+/// rows.
+bool should_join(int columns_apart, int rows_apart, ConstraintKind kind) {
     const int far = std::max(columns_apart, rows_apart);
     const int near = std::min(columns_apart, rows_apart);
     switch (kind) {
-    case StickKind::Structural:
+    case ConstraintKind::Structural:
         return far == 1 && near == 0;
-    case StickKind::Shear:
+    case ConstraintKind::Shear:
         return far == 1 && near == 1;
     default:
         return far == 2 && near == 0;
@@ -32,28 +33,28 @@ bool should_join(int columns_apart, int rows_apart, StickKind kind) {
 
 } // namespace
 
-TEST(Cloth, HasEveryStickOfItsKindOnceAndNoOther) {
+TEST(Cloth, HasEveryConstraintOfItsKindOnceAndNoOther) {
     for (const auto& [columns, rows] : {std::pair{2, 2}, {7, 4}, {3, 9}, {8, 8}}) {
         const Deformable cloth =
             make_cloth({.column_count = std::uint32_t(columns), .row_count = std::uint32_t(rows)});
         std::set<std::pair<std::uint32_t, std::uint32_t>> seen;
-        for (const Stick& stick : cloth.sticks) {
-            const int a = int(stick.a);
-            const int b = int(stick.b);
+        for (const DistanceConstraint& constraint : cloth.constraints) {
+            const int a = int(constraint.a);
+            const int b = int(constraint.b);
             EXPECT_TRUE(should_join(std::abs(a % columns - b % columns), std::abs(a / columns - b / columns),
-                                    stick.kind))
+                                    constraint.kind))
                 << a << " " << b;
-            EXPECT_TRUE(seen.insert(std::minmax(stick.a, stick.b)).second) << a << " " << b;
+            EXPECT_TRUE(seen.insert(std::minmax(constraint.a, constraint.b)).second) << a << " " << b;
         }
         const int structural = (columns - 1) * rows + columns * (rows - 1);
         const int shear = 2 * (columns - 1) * (rows - 1);
         const int bending = (columns - 2) * rows + columns * (rows - 2);
-        EXPECT_EQ(cloth.sticks.size(), std::size_t(structural + shear + bending));
+        EXPECT_EQ(cloth.constraints.size(), std::size_t(structural + shear + bending));
     }
 }
 
-TEST(Cloth, OfThePaperHas59002Sticks) {
-    EXPECT_EQ(make_cloth({.column_count = 100, .row_count = 100}).sticks.size(), 59'002u);
+TEST(Cloth, OfThePaperHas59002Constraints) {
+    EXPECT_EQ(make_cloth({.column_count = 100, .row_count = 100}).constraints.size(), 59'002u);
 }
 
 TEST(Cloth, IsAtRestWhereItStarts) {
@@ -61,8 +62,9 @@ TEST(Cloth, IsAtRestWhereItStarts) {
     const Deformable cloth =
         make_cloth({.column_count = 9, .row_count = 6, .width = 2, .height = 3, .pose = pose});
     EXPECT_TRUE(cloth.velocities.empty());
-    for (const Stick& stick : cloth.sticks)
-        EXPECT_NEAR(length(cloth.positions[stick.b] - cloth.positions[stick.a]), stick.rest_length, 1e-6);
+    for (const DistanceConstraint& constraint : cloth.constraints)
+        EXPECT_NEAR(length(cloth.positions[constraint.b] - cloth.positions[constraint.a]),
+                    constraint.rest_length, 1e-6);
     EXPECT_NEAR(length(Vec3d(cloth.positions.front()) - pose.to_world({-1, -1.5, 0})), 0, 1e-6);
     EXPECT_NEAR(length(Vec3d(cloth.positions.back()) - pose.to_world({1, 1.5, 0})), 0, 1e-6);
 }

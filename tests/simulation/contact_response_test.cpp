@@ -190,7 +190,7 @@ TEST(KnownContacts, PutAParticleAtTheThicknessOverItsPlane) {
     Deformable deformable{.positions = {{0.1F, 0.2F, 0.51F}},
                           .velocities = {{0, 0, -0.02F}},
                           .inverse_masses = {1},
-                          .sticks = {},
+                          .constraints = {},
                           .faces = {}};
     Particles particles(deformable, 1);
     const KnownContacts known = known_of(particles, now, 0.1F);
@@ -205,7 +205,7 @@ TEST(KnownContacts, AskAgainAboutParticlesThatMovedAlongTheSurface) {
     const ColliderNow now(box, box.pose, {.thickness = kWideThickness});
     Deformable deformable{.positions = {{0.1F, 0.2F, 0.51F}, {0.1F, 0.2F, 1.2F}},
                           .inverse_masses = {1, 1},
-                          .sticks = {},
+                          .constraints = {},
                           .faces = {}};
     Particles particles(deformable, 1);
     const KnownContacts known = known_of(particles, now, 0.1F);

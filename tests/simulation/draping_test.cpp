@@ -71,7 +71,7 @@ Vec3d middle(const Simulation& simulation) {
 }
 
 Deformable particle_at(const Vec3f& place) {
-    return {.positions = {place}, .inverse_masses = {1}, .sticks = {}, .faces = {}};
+    return {.positions = {place}, .inverse_masses = {1}, .constraints = {}, .faces = {}};
 }
 
 /// A small sheet that lies on a box at its thickness.

@@ -22,7 +22,7 @@ Deformable particles_at(const std::vector<Vec3f>& places) {
     return {.positions = places,
             .velocities = std::vector<Vec3f>(places.size()),
             .inverse_masses = std::vector<float>(places.size(), 1),
-            .sticks = {},
+            .constraints = {},
             .faces = {}};
 }
 
@@ -98,7 +98,7 @@ TEST(ExactCollision, LosesNoParticleHoweverFastAmongModelsOfAnyScale) {
         Deformable particles = particles_at(places);
         for (Vec3f& velocity : particles.velocities) velocity = test::in_cube(random, 240);
         for (std::uint32_t i = 0; i + 1 < 200; ++i)
-            particles.sticks.push_back({i, i + 1, 0.5F, StickKind::Structural});
+            particles.constraints.push_back({i, i + 1, 0.5F, ConstraintKind::Structural});
         Simulation simulation(particles, {collider},
                               test::jakobsen({.thickness = n % 4 == 0 ? 0 : kContactThickness}));
         EXPECT_EQ(lost_in(simulation, 60), 0u);

@@ -63,7 +63,7 @@ TEST(Handles, LeadWhatTheyHoldRigidlyAlongTheirPath) {
 
 TEST(Handles, LetGoAtTheirTimeOfWhatGoesOnWithItsVelocity) {
     // Led along x at 2 m/s for half a second and let go on the way: nothing else acts.
-    Deformable particle{.positions = {{0, 0, 0}}, .inverse_masses = {1}, .sticks = {}, .faces = {}};
+    Deformable particle{.positions = {{0, 0, 0}}, .inverse_masses = {1}, .constraints = {}, .faces = {}};
     particle.handles = {{{0}, {{0, {}}, {1, {{}, {2, 0, 0}}}}, 0.5}};
     SimulationOptions options;
     options.gravity = {};
@@ -103,7 +103,7 @@ TEST(Handles, PullASheetOverABallWithoutAFaceThatMeetsIt) {
     options.thickness = 0.005;
     Simulation simulation(sheet, {{.map = ExactMap::build(ball), .pose = {{}, {0, 0, 0.7}}}}, options);
     expect_nothing_meets(simulation, {ball}, 75);
-    EXPECT_EQ(simulation.profile().squeezed_count, 0u);
+    EXPECT_EQ(simulation.profile().unresolved_count, 0u);
 }
 
 TEST(Handles, GoAlongWithTheirPartWhereDeformablesAreCombined) {

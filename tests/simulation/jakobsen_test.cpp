@@ -41,7 +41,7 @@ Deformable lively_sheet() {
 
 TEST(Jakobsen, LetsAParticleFallAsVerletDoes) {
     // Without drag, n steps from rest fall by g dt^2 n (n + 1) / 2.
-    Deformable particle{.positions = {{}}, .inverse_masses = {1}, .sticks = {}, .faces = {}};
+    Deformable particle{.positions = {{}}, .inverse_masses = {1}, .constraints = {}, .faces = {}};
     Simulation simulation(
         particle, {},
         jakobsen({.solver = JakobsenOptions{.drag = 0}, .time_step = 0.01, .gravity = {0, 0, -10}}));
@@ -59,10 +59,11 @@ TEST(Jakobsen, KeepsTheMomentumOfAFreeSheet) {
 }
 
 TEST(Jakobsen, RemovesTheShareOfAnErrorThatTheStiffnessOfItsKindSaysByTheMasses) {
-    for (const StickKind kind : {StickKind::Structural, StickKind::Shear, StickKind::Bending}) {
+    for (const ConstraintKind kind :
+         {ConstraintKind::Structural, ConstraintKind::Shear, ConstraintKind::Bending}) {
         Deformable pair{.positions = {{0, 0, 0}, {2, 0, 0}},
                         .inverse_masses = {1, 3},
-                        .sticks = {{0, 1, 1, kind}},
+                        .constraints = {{0, 1, 1, kind}},
                         .faces = {}};
         SimulationOptions options =
             jakobsen({.solver = JakobsenOptions{.iteration_count = 1}, .gravity = {}});

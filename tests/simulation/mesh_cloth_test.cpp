@@ -26,15 +26,16 @@ constexpr float kNaNLength = std::numeric_limits<float>::quiet_NaN();
 constexpr double kRounding = 1e-5;
 const SimulationOptions kWeightless{.gravity = {}};
 
-std::size_t count_of(const Deformable& cloth, StickKind kind) {
-    return static_cast<std::size_t>(std::count_if(cloth.sticks.begin(), cloth.sticks.end(),
-                                                  [=](const Stick& stick) { return stick.kind == kind; }));
+std::size_t count_of(const Deformable& cloth, ConstraintKind kind) {
+    return static_cast<std::size_t>(
+        std::count_if(cloth.constraints.begin(), cloth.constraints.end(),
+                      [=](const DistanceConstraint& constraint) { return constraint.kind == kind; }));
 }
 
-std::set<std::pair<std::uint32_t, std::uint32_t>> pairs_of(const Deformable& cloth, StickKind kind) {
+std::set<std::pair<std::uint32_t, std::uint32_t>> pairs_of(const Deformable& cloth, ConstraintKind kind) {
     std::set<std::pair<std::uint32_t, std::uint32_t>> pairs;
-    for (const Stick& stick : cloth.sticks)
-        if (stick.kind == kind) pairs.insert(std::minmax(stick.a, stick.b));
+    for (const DistanceConstraint& constraint : cloth.constraints)
+        if (constraint.kind == kind) pairs.insert(std::minmax(constraint.a, constraint.b));
     return pairs;
 }
 
@@ -73,34 +74,35 @@ void expect_refusal(const std::string& words, const TriangleMesh& mesh, const Me
 
 } // namespace
 
-TEST(MeshCloth, OfASheetHasTheSticksOfTheSheetThatIsWovenButForBending) {
+TEST(MeshCloth, OfASheetHasTheConstraintsOfTheSheetThatIsWovenButForBending) {
     const Deformable woven = make_cloth({.column_count = 7, .row_count = 5, .width = 1, .height = 4.0 / 6});
     const Deformable cloth = make_cloth(test::sheet_mesh(7, 5), {});
     EXPECT_EQ(cloth.faces, woven.faces);
-    for (const StickKind kind : {StickKind::Structural, StickKind::Shear})
+    for (const ConstraintKind kind : {ConstraintKind::Structural, ConstraintKind::Shear})
         EXPECT_EQ(pairs_of(cloth, kind), pairs_of(woven, kind));
-    EXPECT_EQ(count_of(cloth, StickKind::Bending), 2 * 4 * 6u - 4 - 6); // at edges but those of the border
+    EXPECT_EQ(count_of(cloth, ConstraintKind::Bending),
+              2 * 4 * 6u - 4 - 6); // at edges but those of the border
 }
 
-TEST(MeshCloth, HasOneStickForEachEdgeAndABendingStickAcrossEachButDiagonals) {
+TEST(MeshCloth, HasOneConstraintForEachEdgeAndABendingConstraintAcrossEachButDiagonals) {
     const TriangleMesh sphere = make_sphere(1, 12, 8);
     const Deformable cloth = make_cloth(sphere, {});
     const std::size_t edge_count = sphere.vertices.size() + sphere.faces.size() - 2; // Euler
-    const std::size_t diagonal_count = count_of(cloth, StickKind::Shear) / 2;
-    EXPECT_EQ(count_of(cloth, StickKind::Structural) + diagonal_count, edge_count);
-    EXPECT_EQ(count_of(cloth, StickKind::Bending) + diagonal_count, edge_count);
+    const std::size_t diagonal_count = count_of(cloth, ConstraintKind::Shear) / 2;
+    EXPECT_EQ(count_of(cloth, ConstraintKind::Structural) + diagonal_count, edge_count);
+    EXPECT_EQ(count_of(cloth, ConstraintKind::Bending) + diagonal_count, edge_count);
 }
 
-TEST(MeshCloth, OfTrianglesThatMakeUpNoRectanglesHasNoShearSticks) {
+TEST(MeshCloth, OfTrianglesThatMakeUpNoRectanglesHasNoShearConstraints) {
     TriangleMesh slanted = test::sheet_mesh(6, 6);
     for (Vec3f& vertex : slanted.vertices) vertex.x += 0.5F * vertex.y; // equilateral, nearly
-    EXPECT_EQ(count_of(make_cloth(slanted, {}), StickKind::Shear), 0u);
+    EXPECT_EQ(count_of(make_cloth(slanted, {}), ConstraintKind::Shear), 0u);
 }
 
-TEST(MeshCloth, HasThePapersBendingSticks) {
+TEST(MeshCloth, HasThePapersBendingConstraints) {
     const Deformable cloth = make_cloth(bag(), {});
     // At each edge of a square but none of its diagonals.
-    EXPECT_EQ(count_of(cloth, StickKind::Bending), 2 * 6 * 25u);
+    EXPECT_EQ(count_of(cloth, ConstraintKind::Bending), 2 * 6 * 25u);
 }
 
 TEST(MeshCloth, OfACurvedShapeStaysAtRestWithoutGravity) {
@@ -112,7 +114,9 @@ TEST(MeshCloth, OfACurvedShapeStaysAtRestWithoutGravity) {
 TEST(MeshCloth, ThatLiesFlatAndAtRestDoesNotMoveAtAll) {
     // Powers of two, so that no rest length is rounded.
     Deformable cloth = make_cloth(test::sheet_mesh(9, 9), {});
-    std::erase_if(cloth.sticks, [](const Stick& stick) { return stick.kind == StickKind::Shear; });
+    std::erase_if(cloth.constraints, [](const DistanceConstraint& constraint) {
+        return constraint.kind == ConstraintKind::Shear;
+    });
     expect_at_rest_without_gravity(cloth, 0);
 }
 
@@ -133,10 +137,11 @@ TEST(MeshCloth, TakesItsRestShapeWhenItStartsInAnother) {
         if (is_jakobsen) options.solver = JakobsenOptions{.drag = 0.1};
         Simulation simulation(cloth, {}, options);
         for (int i = 0; i < 400; ++i) simulation.step();
-        double farthest = 0; // bending sticks are as long as angles say
-        for (const Stick& stick : cloth.sticks) {
-            const double distance = length(simulation.positions()[stick.b] - simulation.positions()[stick.a]);
-            farthest = std::max(farthest, std::abs(distance / stick.rest_length - 1));
+        double farthest = 0; // bending constraints are as long as angles say
+        for (const DistanceConstraint& constraint : cloth.constraints) {
+            const double distance =
+                length(simulation.positions()[constraint.b] - simulation.positions()[constraint.a]);
+            farthest = std::max(farthest, std::abs(distance / constraint.rest_length - 1));
         }
         EXPECT_LT(farthest, 1e-3);
     }
@@ -148,8 +153,9 @@ TEST(MeshCloth, HasTheLengthsOfItsRestShapeScaledAndPlacedAnywhere) {
     const Deformable cloth = make_cloth(torus, {.pose = pose, .scale = 2.5});
     for (std::size_t i = 0; i < torus.vertices.size(); ++i)
         EXPECT_EQ(cloth.positions[i], Vec3f(pose.to_world(Vec3d(torus.vertices[i]) * 2.5)));
-    for (const Stick& stick : cloth.sticks)
-        EXPECT_NEAR(length(cloth.positions[stick.b] - cloth.positions[stick.a]), stick.rest_length, 4e-6);
+    for (const DistanceConstraint& constraint : cloth.constraints)
+        EXPECT_NEAR(length(cloth.positions[constraint.b] - cloth.positions[constraint.a]),
+                    constraint.rest_length, 4e-6);
 }
 
 TEST(MeshCloth, WeighsItsParticlesByTheAreaAroundThem) {
@@ -191,8 +197,8 @@ TEST(MeshCloth, MayHaveThreads) {
     }
     const Deformable cloth = make_cloth(mesh, options);
     const Deformable sheet = make_cloth(test::sheet_mesh(4, 4), {});
-    EXPECT_EQ(cloth.sticks.size(), sheet.sticks.size() + 5 + 4);
-    EXPECT_EQ(count_of(cloth, StickKind::Bending), count_of(sheet, StickKind::Bending) + 4);
+    EXPECT_EQ(cloth.constraints.size(), sheet.constraints.size() + 5 + 4);
+    EXPECT_EQ(count_of(cloth, ConstraintKind::Bending), count_of(sheet, ConstraintKind::Bending) + 4);
     for (const float inverse_mass : cloth.inverse_masses) {
         EXPECT_GT(inverse_mass, 0.1F);
         EXPECT_LT(inverse_mass, 10);

@@ -239,16 +239,16 @@ TEST(Newton, AStripOfTwiceTheBendingStiffnessSagsHalfAsMuch) {
 
 namespace {
 
-/// A thread of one stick of 0.1 m, whose upper end is pinned. The lower has half of its mass.
+/// A thread of one constraint of 0.1 m, whose upper end is pinned. The lower has half of its mass.
 Deformable hanging_thread() {
     Deformable thread;
     thread.positions = {{0, 0, 0}, {0, 0, -0.1F}};
     thread.inverse_masses = {0, 1};
-    thread.sticks = {{0, 1, 0.1F, StickKind::Structural}};
+    thread.constraints = {{0, 1, 0.1F, ConstraintKind::Structural}};
     return thread;
 }
 
-/// Of a thread of one stick, which is as wide as it is long.
+/// Of a thread of one constraint, which is as wide as it is long.
 double end_mass(const SimulationOptions& options) {
     return options.newton().material.density * 0.1 * 0.1 / 2;
 }
@@ -341,7 +341,7 @@ TEST(Newton, ParticlesFallOnEveryKindOfMapAndStayOutside) {
         }
         EXPECT_GT(simulation.profile().contact_count, 1000u);
         EXPECT_GT(middle_of(simulation).z, -0.4); // of free fall: -19
-        // Particles stick where rays of the distance map touch the torus from aside.
+        // Particles constraint where rays of the distance map touch the torus from aside.
         const bool is_ragged = std::holds_alternative<DistanceMap>(map.kind);
         EXPECT_LT(simulation.residual().root_mean_square, is_ragged ? 0.03 : 0.01);
         EXPECT_LT(simulation.residual().largest, is_ragged ? 0.4 : 0.06);

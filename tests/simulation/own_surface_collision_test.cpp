@@ -28,7 +28,7 @@ struct OwnSheet {
             {.column_count = side, .row_count = side, .width = width, .height = width, .pose = pose});
         mesh = {sheet.positions, sheet.faces};
         velocities.resize(sheet.particle_count());
-        for (const Stick& stick : sheet.sticks) sticks_.push_back(stick);
+        for (const DistanceConstraint& constraint : sheet.constraints) constraints_.push_back(constraint);
     }
     void move(const Vec3f& acceleration) {
         std::vector<Vec3f>& places = mesh.vertices;
@@ -36,11 +36,11 @@ struct OwnSheet {
         for (std::size_t i = 0; i < places.size(); ++i)
             places[i] += (velocities[i] + acceleration * float(kOwnSeconds)) * float(kOwnSeconds);
         for (int n = 0; n < 10; ++n)
-            for (const Stick& stick : sticks_) {
-                const Vec3f across = places[stick.b] - places[stick.a];
-                const Vec3f half = across * (0.4F * (1 - stick.rest_length / (length(across) + 1e-9F)));
-                places[stick.a] += half;
-                places[stick.b] -= half;
+            for (const DistanceConstraint& constraint : constraints_) {
+                const Vec3f across = places[constraint.b] - places[constraint.a];
+                const Vec3f half = across * (0.4F * (1 - constraint.rest_length / (length(across) + 1e-9F)));
+                places[constraint.a] += half;
+                places[constraint.b] -= half;
             }
         for (std::size_t i = 0; i < places.size(); ++i)
             velocities[i] = (places[i] - before[i]) * float(1 / kOwnSeconds);
@@ -51,7 +51,7 @@ struct OwnSheet {
     }
 
   private:
-    std::vector<Stick> sticks_;
+    std::vector<DistanceConstraint> constraints_;
 };
 
 SurfaceCollision collision_of(const OwnSheet& sheet, std::vector<Collider> colliders,

@@ -146,7 +146,7 @@ TEST(Pressure, BearsAPillowThatLiesFlatWithoutIt) {
         Simulation simulation(make_cloth(pillow(0.02), cloth), {{.map = ExactMap::build(floor)}}, options);
         for (int i = 0; i < 90; ++i) simulation.step();
         EXPECT_EQ(meeting_faces(simulation, {floor}).size(), 0u) << pressure;
-        EXPECT_EQ(simulation.profile().squeezed_count, 0u) << pressure;
+        EXPECT_EQ(simulation.profile().unresolved_count, 0u) << pressure;
         // All of its weight rests on the floor.
         EXPECT_NEAR(simulation.load_on(0).force.z, -9.81 * 0.2 * 2 * 0.16, 0.05) << pressure;
         return height_of(simulation);
@@ -179,5 +179,4 @@ TEST(Pressure, IsRefusedWhereNothingIsClosed) {
     expect_words(refusal(body, {}), "no piece of the cloth is closed");
     const Deformable ball = make_cloth(make_sphere(0.3, 12, 8), MeshClothOptions{});
     EXPECT_EQ(refusal(ball, {}), "");
-    expect_words(refusal(ball, jakobsen()), "pressure");
 }

@@ -122,7 +122,7 @@ TEST(SavedState, IsRefusedByAnotherSimulationInASentenceThatSaysWhatDiffers) {
     expect_refused("other options", [](KindOfSimulation& k) { k.options.friction = 0.1; });
     expect_refused("other options",
                    [](KindOfSimulation& k) { k.options.newton().collision = CollisionMode::Surfaces; });
-    expect_refused("another deformable", [](KindOfSimulation& k) { k.deformable.sticks.pop_back(); });
+    expect_refused("another deformable", [](KindOfSimulation& k) { k.deformable.constraints.pop_back(); });
     expect_refused("other initial positions",
                    [](KindOfSimulation& k) { k.deformable.positions[0].z += 0.01F; });
     expect_refused("2 colliders, not 3", [](KindOfSimulation& k) {

@@ -190,8 +190,8 @@ TEST(SelfCollision, KeepsLooseSheetsThatFallOnEachOtherApart) {
         sheets.velocities.insert(sheets.velocities.end(), sheet.particle_count(), {0, 0, -4.8F * layer});
         for (const auto& [a, b, c] : sheet.faces)
             sheets.faces.push_back({a + offset, b + offset, c + offset});
-        for (const auto& [a, b, rest, kind] : sheet.sticks)
-            sheets.sticks.push_back({a + offset, b + offset, rest, kind});
+        for (const auto& [a, b, rest, kind] : sheet.constraints)
+            sheets.constraints.push_back({a + offset, b + offset, rest, kind});
     }
     sheets.inverse_masses.assign(sheets.particle_count(), 1);
     Simulation simulation(sheets, colliders_of({ball}), kSelf);
@@ -224,7 +224,7 @@ TEST(SelfCollision, KeepsABallThatTwoPlatesCrushPoleFirstOffItself) {
     for (const double friction : {0.0, 0.5}) {
         Simulation simulation(ball, colliders, {.thickness = 0.004, .friction = friction});
         expect_nothing_meets(simulation, plates, 22);
-        EXPECT_EQ(simulation.profile().squeezed_count, 0u);
+        EXPECT_EQ(simulation.profile().unresolved_count, 0u);
     }
 }
 
@@ -237,7 +237,8 @@ TEST(SelfCollision, KeepsAThreadOffItselfAndASheet) {
         const float way = 0.05F * float(i);
         both.positions.push_back({0.013F + 0.1F * way, 0.02F + 0.03F * std::sin(3 * way), 0.1F + way});
         both.inverse_masses.push_back(1);
-        if (i > 0) both.sticks.push_back({offset + i - 1, offset + i, 0.05F, StickKind::Structural});
+        if (i > 0)
+            both.constraints.push_back({offset + i - 1, offset + i, 0.05F, ConstraintKind::Structural});
     }
     Simulation simulation(both, {}, kSelf);
     expect_nothing_meets(simulation, {}, 62);
@@ -259,7 +260,7 @@ TEST(SelfCollision, OpensTheKnotOfASheetThatWasFoldedInFourTooSharply) {
         simulation.step();
         ASSERT_TRUE(meeting_faces(simulation, {}).empty()) << frame;
     }
-    EXPECT_EQ(simulation.profile().squeezed_count, 0u);
+    EXPECT_EQ(simulation.profile().unresolved_count, 0u);
     EXPECT_LT(simulation.residual().largest, 0.2);
 }
 
@@ -334,7 +335,7 @@ TEST(SelfCollision, HoldsLayersOfWhatFliesBackFromEachOtherAndNotInTheAir) {
         const Deformable sheet = knotted(velocity);
         Simulation simulation(sheet, colliders, options);
         for (int i = 0; i < 6; ++i) simulation.step();
-        EXPECT_EQ(simulation.profile().squeezed_count, 0u);
+        EXPECT_EQ(simulation.profile().unresolved_count, 0u);
         const Vec3d way = mean_of(simulation.positions()) - mean_of(sheet.positions);
         EXPECT_NEAR(length(way - velocity * 0.1), 0, 0.02) << way.x << ' ' << way.y << ' ' << way.z;
         EXPECT_TRUE(meeting_faces(simulation, {}).empty());
@@ -355,7 +356,7 @@ TEST(SelfCollision, KeepsTheMomentumOfASheetThatUnfoldsInTheAir) {
         for (Vec3f& p : sheet.positions) p = p * 0.6F + in_cube(random, 0.003F);
         Simulation simulation(sheet, colliders, {.solver = NewtonOptions{.air_drag = 0}, .gravity = {}});
         for (int i = 0; i < 40; ++i) simulation.step();
-        EXPECT_EQ(simulation.profile().squeezed_count, 0u);
+        EXPECT_EQ(simulation.profile().unresolved_count, 0u);
         const Vec3d before = mean_of(simulation.positions());
         for (int i = 0; i < 6; ++i) simulation.step();
         EXPECT_LT(length(mean_of(simulation.positions()) - before) * 10, 0.1); // metres per second
@@ -384,7 +385,7 @@ TEST(SelfCollision, LeavesANetAloneThatABallOnlyPasses) {
                 options.gravity = {};
                 Simulation simulation(net, colliders, options);
                 while (simulation.colliders()[0].pose.translation.x < 0.9) simulation.step();
-                EXPECT_EQ(simulation.profile().squeezed_count, 0u);
+                EXPECT_EQ(simulation.profile().unresolved_count, 0u);
                 for (std::size_t i = 0; i < net.positions.size(); ++i)
                     ASSERT_LT(length(simulation.positions()[i] - net.positions[i]), 1e-6F)
                         << i << ' ' << speed << ' ' << height << ' ' << count;

@@ -170,7 +170,7 @@ TEST(SeveralColliders, AreMetHoweverFastTheyCome) {
                     ASSERT_GT(double{p.z}, simulation.colliders()[1].pose.translation.z) << i;
             }
             EXPECT_EQ(simulation.profile().lost_count, 0u);
-            EXPECT_EQ(simulation.profile().squeezed_count, 0u);
+            EXPECT_EQ(simulation.profile().unresolved_count, 0u);
         }
 }
 
@@ -256,7 +256,7 @@ TEST(CollisionFilter, LetsOnePartOfADeformableThroughAModelThatHoldsTheOther) {
             EXPECT_GT(highest(simulation.positions().first(count)), -0.5F);
             EXPECT_NEAR(highest(simulation.positions().subspan(count)), 0.01F, 0.005F);
             EXPECT_EQ(simulation.profile().lost_count, 0U);
-            EXPECT_EQ(simulation.profile().squeezed_count, 0U);
+            EXPECT_EQ(simulation.profile().unresolved_count, 0U);
         }
 }
 
@@ -290,7 +290,7 @@ TEST(CollisionFilter, LetsFacesThroughThatHaveAParticleWhichPasses) {
         const bool passes = particle % 11 == 0;
         EXPECT_EQ(simulation.positions()[particle].z < 0, passes) << particle;
     }
-    EXPECT_EQ(simulation.profile().squeezed_count, 0U);
+    EXPECT_EQ(simulation.profile().unresolved_count, 0U);
 }
 
 TEST(CollisionFilter, LetsWhatUntanglesStayInAModelThatItPassesThrough) {

@@ -15,8 +15,11 @@ using namespace echinus;
 namespace {
 
 Deformable single_particle(const Vec3f& position, const Vec3f& velocity) {
-    return {
-        .positions = {position}, .velocities = {velocity}, .inverse_masses = {1}, .sticks = {}, .faces = {}};
+    return {.positions = {position},
+            .velocities = {velocity},
+            .inverse_masses = {1},
+            .constraints = {},
+            .faces = {}};
 }
 
 /// A sheet whose particles differ in mass and start with a velocity that stretches and turns it.
@@ -31,12 +34,13 @@ Deformable lively_cloth() {
     return cloth;
 }
 
-double largest_strain(const Simulation& simulation, StickKind kind) {
+double largest_strain(const Simulation& simulation, ConstraintKind kind) {
     double largest = 0;
-    for (const Stick& stick : simulation.deformable().sticks) {
-        if (stick.kind != kind) continue;
-        const double distance = length(simulation.positions()[stick.b] - simulation.positions()[stick.a]);
-        largest = std::max(largest, std::abs(distance / stick.rest_length - 1));
+    for (const DistanceConstraint& constraint : simulation.deformable().constraints) {
+        if (constraint.kind != kind) continue;
+        const double distance =
+            length(simulation.positions()[constraint.b] - simulation.positions()[constraint.a]);
+        largest = std::max(largest, std::abs(distance / constraint.rest_length - 1));
     }
     return largest;
 }
@@ -82,14 +86,15 @@ TEST(Solver, TakesTheDragFromTheVelocityInEveryFrame) {
     EXPECT_NEAR(simulation.largest_speed(), 81, 1e-3);
 }
 
-TEST(Solver, BringsSticksBackToTheirLength) {
+TEST(Solver, BringsConstraintsBackToTheirLength) {
     Deformable cloth = make_cloth({.column_count = 10, .row_count = 10});
     for (Vec3f& p : cloth.positions) p *= 1.3F;
     Simulation simulation(cloth, {},
                           test::jakobsen({.solver = JakobsenOptions{.drag = 0.05}, .gravity = {}}));
-    EXPECT_NEAR(largest_strain(simulation, StickKind::Structural), 0.3, 1e-3);
+    EXPECT_NEAR(largest_strain(simulation, ConstraintKind::Structural), 0.3, 1e-3);
     for (int i = 0; i < 300; ++i) simulation.step();
-    for (const StickKind kind : {StickKind::Structural, StickKind::Shear, StickKind::Bending})
+    for (const ConstraintKind kind :
+         {ConstraintKind::Structural, ConstraintKind::Shear, ConstraintKind::Bending})
         EXPECT_LT(largest_strain(simulation, kind), 1e-3);
 }
 
@@ -97,7 +102,8 @@ TEST(Solver, HangsAChainFromItsPinWithNoMoreStretchThanItsWeightMakes) {
     Deformable chain;
     for (int i = 0; i < 5; ++i) chain.positions.push_back({float(i) * 0.1F, 0, 0});
     chain.inverse_masses = {0, 1, 1, 1, 1};
-    for (std::uint32_t i = 0; i < 4; ++i) chain.sticks.push_back({i, i + 1, 0.1F, StickKind::Structural});
+    for (std::uint32_t i = 0; i < 4; ++i)
+        chain.constraints.push_back({i, i + 1, 0.1F, ConstraintKind::Structural});
     Simulation simulation(chain, {}, test::jakobsen({.solver = JakobsenOptions{.drag = 0.02}}));
     for (int i = 0; i < 3000 && !simulation.at_rest(); ++i) simulation.step();
     EXPECT_TRUE(simulation.at_rest());
@@ -109,7 +115,7 @@ TEST(Solver, HangsAChainFromItsPinWithNoMoreStretchThanItsWeightMakes) {
 TEST(Solver, LeavesTwoParticlesOnOneSpotFinite) {
     Deformable pair{.positions = {{1, 1, 1}, {1, 1, 1}},
                     .inverse_masses = {1, 1},
-                    .sticks = {{0, 1, 1, StickKind::Structural}},
+                    .constraints = {{0, 1, 1, ConstraintKind::Structural}},
                     .faces = {}};
     Simulation simulation(pair, {}, test::jakobsen({.gravity = {}}));
     simulation.step();
@@ -206,10 +212,10 @@ TEST(Solver, VelocitiesBeyondAllBoundsDivergeInEachFurtherStepToo) {
     }
 }
 
-TEST(Solver, TellsHowFarStructuralSticksAreFromTheirLength) {
+TEST(Solver, TellsHowFarStructuralConstraintsAreFromTheirLength) {
     Deformable cloth = make_cloth({.column_count = 3, .row_count = 2, .width = 2, .height = 1});
     cloth.inverse_masses.assign(6, 0);
-    for (Vec3f& p : cloth.positions) p.x *= 1.5F; // four sticks of seven are longer by a half
+    for (Vec3f& p : cloth.positions) p.x *= 1.5F; // four constraints of seven are longer by a half
     const Residual residual = Simulation(cloth, {}, {}).residual();
     EXPECT_NEAR(residual.largest, 0.5, 1e-6);
     EXPECT_NEAR(residual.root_mean_square, std::sqrt(4 * 0.25 / 7), 1e-6);

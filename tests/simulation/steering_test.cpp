@@ -42,8 +42,8 @@ Vec3d mean_velocity(const Simulation& simulation) {
 } // namespace
 
 TEST(Steering, GivesAParticleItsVelocity) {
-    Simulation simulation({.positions = {{1, 2, 3}}, .inverse_masses = {1}, .sticks = {}, .faces = {}}, {},
-                          kWithoutForces);
+    Simulation simulation({.positions = {{1, 2, 3}}, .inverse_masses = {1}, .constraints = {}, .faces = {}},
+                          {}, kWithoutForces);
     simulation.set_particle_velocity(0, {10, 0, -20});
     simulation.step();
     EXPECT_NEAR(simulation.positions()[0].x, 1.1, 1e-6);

@@ -52,7 +52,7 @@ float expect_parted(const Deformable& deformable, const std::vector<TriangleMesh
         if (::testing::Test::HasFailure()) break;
         simulation.step();
     }
-    EXPECT_EQ(simulation.profile().squeezed_count, 0u);
+    EXPECT_EQ(simulation.profile().unresolved_count, 0u);
     return stretch;
 }
 

@@ -145,11 +145,11 @@ TEST(SimulationSetUp, KeepsHalfTheSpacingOfTheParticlesAwayUnlessToldOtherwise) 
     EXPECT_EQ(thickness(sheet, test::jakobsen({.thickness = 0})), 0);
     EXPECT_EQ(thickness(sheet, {.thickness = 0.3}), 0.3);
     Deformable loose = sheet;
-    loose.sticks.clear();
+    loose.constraints.clear();
     EXPECT_EQ(thickness(loose, {}), 0);
 }
 
-TEST(SimulationSetUp, NamesTheParticleStickOrFaceAtFault) {
+TEST(SimulationSetUp, NamesTheParticleConstraintOrFaceAtFault) {
     expect_words(refusal([](Deformable& d, auto&) { d.positions[4].x = float(kNaNOption); }), "particle 4");
     expect_words(refusal([](Deformable& d, auto&) {
                      d.velocities.resize(d.particle_count());
@@ -157,10 +157,11 @@ TEST(SimulationSetUp, NamesTheParticleStickOrFaceAtFault) {
                  }),
                  "particle 5");
     expect_words(refusal([](Deformable& d, auto&) { d.inverse_masses[6] = -1; }), "particle 6");
-    expect_words(refusal([](Deformable& d, auto&) { d.sticks[2].b = 9; }), "stick 2");
-    expect_words(refusal([](Deformable& d, auto&) { d.sticks[3].a = d.sticks[3].b; }), "stick 3");
-    expect_words(refusal([](Deformable& d, auto&) { d.sticks[1].rest_length = float(kNaNOption); }),
-                 "stick 1");
+    expect_words(refusal([](Deformable& d, auto&) { d.constraints[2].b = 9; }), "constraint 2");
+    expect_words(refusal([](Deformable& d, auto&) { d.constraints[3].a = d.constraints[3].b; }),
+                 "constraint 3");
+    expect_words(refusal([](Deformable& d, auto&) { d.constraints[1].rest_length = float(kNaNOption); }),
+                 "constraint 1");
     expect_words(refusal([](Deformable& d, auto&) { d.faces[5][2] = 9; }), "face 5 refers to particle 9");
     expect_words(refusal([](Deformable& d, auto&) { d.inverse_masses.pop_back(); }), "8 inverse masses");
     expect_words(refusal([](Deformable& d, auto&) { d.positions[7].y = -1.1e15F; }),
@@ -203,7 +204,7 @@ TEST(SimulationSetUp, NamesTheFacesWithWhichADeformableBeginsIntersecting) {
     Deformable thread;
     thread.positions = {{0, 0, 2.2F}, {0, 0, 3}};
     thread.inverse_masses = {1, 1};
-    thread.sticks = {{0, 1, 0.8F, StickKind::Structural}};
+    thread.constraints = {{0, 1, 0.8F, ConstraintKind::Structural}};
     expect_error(ErrorCode::InvalidOptions, "the edge from particle 0 to 1 of the deformable and face ",
                  [&] { Simulation(thread, box, surfaces); });
     // Particles alone may begin anywhere.

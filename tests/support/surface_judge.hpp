@@ -15,15 +15,16 @@
 /// Judges whether surfaces meet, on published positions and with no part of the simulation.
 namespace echinus::test {
 
-/// The faces of a deformable, and its structural sticks without faces as faces without area.
+/// The faces of a deformable, and its structural constraints without faces as faces without area.
 inline TriangleMesh surface_of(const Deformable& deformable) {
     TriangleMesh surface{deformable.positions, deformable.faces};
     std::set<std::pair<std::uint32_t, std::uint32_t>> edges;
     for (const auto& [a, b, c] : deformable.faces)
         for (const auto& edge : {std::minmax(a, b), std::minmax(b, c), std::minmax(c, a)}) edges.insert(edge);
-    for (const Stick& stick : deformable.sticks)
-        if (stick.kind == StickKind::Structural && !edges.contains(std::minmax(stick.a, stick.b)))
-            surface.faces.push_back({stick.a, stick.b, stick.b});
+    for (const DistanceConstraint& constraint : deformable.constraints)
+        if (constraint.kind == ConstraintKind::Structural &&
+            !edges.contains(std::minmax(constraint.a, constraint.b)))
+            surface.faces.push_back({constraint.a, constraint.b, constraint.b});
     return surface;
 }
 
@@ -58,9 +59,9 @@ inline void expect_nothing_meets(Simulation& simulation, const std::vector<Trian
         const std::vector<FacePair> pairs = meeting_faces(simulation, models);
         ASSERT_EQ(pairs.size(), 0u) << "in frame " << simulation.frame() << ", first faces " << pairs[0].a
                                     << " and " << pairs[0].b << "; squeezed "
-                                    << simulation.profile().squeezed_count << " times";
+                                    << simulation.profile().unresolved_count << " times";
     }
-    EXPECT_EQ(simulation.profile().squeezed_count, 0u);
+    EXPECT_EQ(simulation.profile().unresolved_count, 0u);
     EXPECT_GT(simulation.profile().contact_count, 0u);
 }
 

@@ -304,13 +304,13 @@ TEST_F(SimulateCommand, SavesTheSurfaceOfASoftBodyAlone) {
         {"render", "moment", "run", "--samples", "1", "--width", "60", "--height", "40", "-o", "p.png"});
 }
 
-TEST_F(SimulateCommand, ReportsTheStrainOfAMaterialThatHasNoSticks) {
+TEST_F(SimulateCommand, ReportsTheStrainOfAMaterialThatHasNoConstraints) {
     // A block that stands on its lower side: of its height it loses about a half of density * g * height / E.
     write("scene.json", R"({"model": {"box": {}}, "frame_limit": 90, "bodies": [{"young_modulus": 5000,
         "mesh": {"box": {"size": [0.2, 0.2, 0.2]}}, "element": 0.1, "position": [0, 0, 0.61],
         "pins": {"from": [-1, -1, -0.11], "to": [1, 1, -0.09]}}]})");
     const nlohmann::json report = simulate("scene.json");
-    EXPECT_EQ(report.at("sticks"), 0);
+    EXPECT_EQ(report.at("constraints"), 0);
     EXPECT_GT(report.at("strain").at("mean"), 0.1);
     EXPECT_LT(report.at("strain").at("largest"), 0.6);
     EXPECT_GT(report.at("strain").at("edges").at("mean"), 0.05);
@@ -432,7 +432,7 @@ TEST_F(SimulateCommand, LetsSurfacesCollideWhereTheSceneOrAnOptionSaysSo) {
     const nlohmann::json surfaces = simulate("surfaces.json");
     EXPECT_EQ(surfaces.at("collision"), "surfaces_and_self");
     EXPECT_EQ(surfaces.at("intersecting_pairs"), 0);
-    EXPECT_EQ(surfaces.at("squeezed"), 0);
+    EXPECT_EQ(surfaces.at("unresolved"), 0);
     EXPECT_GE(surfaces.at("truncated").at("most"), surfaces.at("truncated").at("mean"));
     const auto hash_with = [&](const std::string& name, const std::vector<std::string>& options) {
         return simulate(name, options).at("state_hash");
@@ -523,7 +523,7 @@ TEST_F(SimulateCommand, DeformsAColliderByACacheAndSavesIt) {
     write("scene.json", scene);
     const nlohmann::json report = simulate("scene.json", {"--every", "10"});
     EXPECT_EQ(report.at("lost_count"), 0);
-    EXPECT_EQ(report.at("squeezed"), 0);
+    EXPECT_EQ(report.at("unresolved"), 0);
     EXPECT_EQ(report.at("intersecting_pairs"), 0);
     EXPECT_EQ(report.at("inside_at_rest"), 0);
     EXPECT_GT(report.at("contact_gap").at("particles"), 50);

@@ -59,7 +59,7 @@ TEST(Strain, OfAThreadIsThatOfItsPieces) {
 }
 
 TEST(Strain, OfNothingIsNone) {
-    const Deformable particle{.positions = {{}}, .inverse_masses = {1}, .sticks = {}, .faces = {}};
+    const Deformable particle{.positions = {{}}, .inverse_masses = {1}, .constraints = {}, .faces = {}};
     EXPECT_FALSE(material_strain(particle));
     EXPECT_FALSE(edge_strain(particle));
 }

@@ -112,7 +112,7 @@ describe('A collision', () => {
                 for (let i = 2; i < 9; i += 3) collision.positions[i] -= 0.02;
                 collision.correct(SECONDS);
             }
-            return [echinus.makeMesh(collision.positions.slice(), faces).intersectingPairs(needle).length / 2, collision.squeezedCount];
+            return [echinus.makeMesh(collision.positions.slice(), faces).intersectingPairs(needle).length / 2, collision.unresolvedCount];
         };
         assert.deepEqual(fallen({ faces, surfaces: true }), [0, 0]);
         assert.ok(fallen({})[0] > 0);

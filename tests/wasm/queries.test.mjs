@@ -157,7 +157,7 @@ describe('Map files of every version', () => {
 });
 
 describe('A simulation', () => {
-    test('tells what of it touches its model and what is inside, how it was computed, and how far its sticks are stretched', () => {
+    test('tells what of it touches its model and what is inside, how it was computed, and how far its constraints are stretched', () => {
         const scene = echinus.parseScene({ ...falling, cloth: { ...falling.cloth, position: [0, 0, 0.42] } });
         const simulation = scene.makeSimulation(scene.buildMap(scene.makeModel()));
         assert.equal(scene.particleCount, simulation.particleCount);
@@ -167,9 +167,9 @@ describe('A simulation', () => {
         assert.equal(inside.includes(1), false);
         const contacts = simulation.contactsBatch(0.1, echinus.makeContacts(simulation.particleCount));
         assert.ok(Array.from({ length: simulation.particleCount }, (_, i) => contacts.at(i)).some(({ found }) => found));
-        const { contactCount, lostCount, measuredPairCount, squeezedCount } = simulation.profile;
+        const { contactCount, lostCount, measuredPairCount, unresolvedCount } = simulation.profile;
         assert.ok(contactCount > 0 && measuredPairCount > 0);
-        assert.deepEqual([lostCount, squeezedCount], [0, 0]);
+        assert.deepEqual([lostCount, unresolvedCount], [0, 0]);
         const { rootMeanSquare, largest } = simulation.residual;
         assert.ok(rootMeanSquare > 0 && largest > rootMeanSquare);
     });

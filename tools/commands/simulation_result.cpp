@@ -196,7 +196,7 @@ Json to_json(const SimulationResult& result) {
     return {
         {"scene", result.scene_name},
         {"particles", deformable.particle_count()},
-        {"sticks", deformable.sticks.size()},
+        {"constraints", deformable.constraints.size()},
         {"tetrahedra", {{"count", deformable.tetrahedra.size()}, {"crushed", count_crushed(deformable)}}},
         {"solver", solver_of(options)},
         {"iterations", most_iterations_of(options)},
@@ -217,7 +217,7 @@ Json to_json(const SimulationResult& result) {
         {"rescued_count", simulation.profile().rescued_count},
         {"collision", collision_of(options)},
         {"truncated", {{"mean", rates.truncated_per_frame}, {"most", result.most_truncated}}},
-        {"squeezed", simulation.profile().squeezed_count},
+        {"unresolved", simulation.profile().unresolved_count},
         {"inside_at_rest", result.verdict.inside_count},
         {"deepest", {{"absolute", result.verdict.deepest}, {"in_radii", result.verdict.deepest / radius}}},
         {"intersecting_pairs", result.verdict.pairs.with_models},
@@ -266,7 +266,7 @@ std::string to_text(const SimulationResult& result) {
         text += fmt::format("  {:<22}{}\n", label, value);
     };
     add("particles, constraints",
-        fmt::format("{}, {}", particle_count, simulation.deformable().sticks.size()));
+        fmt::format("{}, {}", particle_count, simulation.deformable().constraints.size()));
     if (const Deformable& body = simulation.deformable(); !body.tetrahedra.empty())
         add("tetrahedra",
             fmt::format("{}, {} flat or inverted at the end", body.tetrahedra.size(), count_crushed(body)));
@@ -285,7 +285,7 @@ std::string to_text(const SimulationResult& result) {
     if (simulation.options().surfaces_collide())
         add("vertices truncated",
             fmt::format("{:.2f} per frame, {} at most; {} unresolved pairs", rates.truncated_per_frame,
-                        result.most_truncated, simulation.profile().squeezed_count));
+                        result.most_truncated, simulation.profile().unresolved_count));
     add("particles inside", fmt::format("{} ({}), by winding number", result.verdict.inside_count,
                                         percent(static_cast<double>(result.verdict.inside_count) /
                                                 static_cast<double>(particle_count))));

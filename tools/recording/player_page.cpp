@@ -164,7 +164,7 @@ Json to_json(const RigidTransform& pose) {
 
 /// The part of report.json that a page shows.
 Json figures_of(const SimulationResult& result) {
-    return ::to_json(result).part({"particles", "sticks", "solver", "iterations", "time_step", "frames",
+    return ::to_json(result).part({"particles", "constraints", "solver", "iterations", "time_step", "frames",
                                    "frames_to_rest", "ms_per_frame", "queries_per_frame", "ns_per_query",
                                    "map_kind", "thickness", "gravity"});
 }

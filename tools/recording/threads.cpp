@@ -47,9 +47,10 @@ std::vector<std::array<std::uint32_t, 2>> threads_of(const Deformable& cloth) {
         for (const auto& edge : {std::minmax(a, b), std::minmax(b, c), std::minmax(c, a)})
             face_edges.insert(edge);
     std::vector<std::array<std::uint32_t, 2>> threads;
-    for (const Stick& stick : cloth.sticks)
-        if (stick.kind == StickKind::Structural && !face_edges.contains(std::minmax(stick.a, stick.b)))
-            threads.push_back({stick.a, stick.b});
+    for (const DistanceConstraint& constraint : cloth.constraints)
+        if (constraint.kind == ConstraintKind::Structural &&
+            !face_edges.contains(std::minmax(constraint.a, constraint.b)))
+            threads.push_back({constraint.a, constraint.b});
     return threads;
 }
 

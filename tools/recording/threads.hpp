@@ -12,7 +12,7 @@
 /// Threads of a cloth: edges without faces. Among faces a piece of thread is { a, b, b }, a face without
 /// area, as for echinus::intersecting_pairs().
 
-/// The structural sticks that are no edges of faces.
+/// The structural constraints that are no edges of faces.
 std::vector<std::array<std::uint32_t, 2>> threads_of(const echinus::Deformable& cloth);
 
 /// The faces of a cloth, and after them its threads.

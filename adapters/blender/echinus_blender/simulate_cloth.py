@@ -131,12 +131,12 @@ class SimulateCloth(Reporting, bpy.types.Operator):
         play(cloth, sampled.destination, run.recorded, sampled.matrices)
         profile = run.simulation.profile
         sentence = f"{name}: {len(run.recorded)} frames in {seconds:.1f} s"
-        if profile.lost_count or profile.squeezed_count:
-            sentence += f"; no room {profile.squeezed_count} times, {profile.lost_count} vertices lost"
+        if profile.lost_count or profile.unresolved_count:
+            sentence += f"; no room {profile.unresolved_count} times, {profile.lost_count} vertices lost"
         if not bpy.data.filepath and not sampled.destination.cache:
             sentence += "; save the blend file to keep the motion"
         reservations = said_of(sampled.skipped) + unchecked_movers(cloth)
-        is_bad = bool(profile.lost_count or profile.squeezed_count or reservations)
+        is_bad = bool(profile.lost_count or profile.unresolved_count or reservations)
         self.tell(scene, sentence + reservations, is_bad)
 
 

@@ -16,12 +16,14 @@ template <>
 inline constexpr std::size_t kFirstSize<echinus_deformable_arrays> = offsetof(echinus_deformable_arrays,
                                                                               tetrahedra);
 
-static_assert(ECHINUS_STICK_SHEAR == static_cast<int>(StickKind::Shear) &&
-              ECHINUS_STICK_BENDING == static_cast<int>(StickKind::Bending) &&
-              ECHINUS_STICK_KIND_COUNT == kStickKindCount);
-static_assert(sizeof(echinus_stick) == sizeof(Stick) && offsetof(echinus_stick, b) == offsetof(Stick, b) &&
-              offsetof(echinus_stick, rest_length) == offsetof(Stick, rest_length) &&
-              offsetof(echinus_stick, kind) == offsetof(Stick, kind));
+static_assert(ECHINUS_CONSTRAINT_SHEAR == static_cast<int>(ConstraintKind::Shear) &&
+              ECHINUS_CONSTRAINT_BENDING == static_cast<int>(ConstraintKind::Bending) &&
+              ECHINUS_CONSTRAINT_KIND_COUNT == kConstraintKindCount);
+static_assert(sizeof(echinus_distance_constraint) == sizeof(DistanceConstraint) &&
+              offsetof(echinus_distance_constraint, b) == offsetof(DistanceConstraint, b) &&
+              offsetof(echinus_distance_constraint, rest_length) ==
+                  offsetof(DistanceConstraint, rest_length) &&
+              offsetof(echinus_distance_constraint, kind) == offsetof(DistanceConstraint, kind));
 static_assert(sizeof(echinus_attachment) == sizeof(Attachment) &&
               offsetof(echinus_attachment, collider) == offsetof(Attachment, collider));
 static_assert(sizeof(echinus_collision_filter) == sizeof(CollisionFilter) &&
@@ -41,8 +43,8 @@ echinus_deformable_arrays arrays_of(const Deformable& deformable) {
                             ? nullptr
                             : reinterpret_cast<const float*>(deformable.velocities.data());
     arrays.inverse_masses = deformable.inverse_masses.data();
-    arrays.sticks = reinterpret_cast<const echinus_stick*>(deformable.sticks.data());
-    arrays.stick_count = deformable.sticks.size();
+    arrays.constraints = reinterpret_cast<const echinus_distance_constraint*>(deformable.constraints.data());
+    arrays.constraint_count = deformable.constraints.size();
     arrays.faces = reinterpret_cast<const std::uint32_t*>(deformable.faces.data());
     arrays.face_count = deformable.faces.size();
     arrays.attachments = reinterpret_cast<const echinus_attachment*>(deformable.attachments.data());
@@ -66,13 +68,14 @@ std::vector<T> copy_of(const Given* first, std::size_t count, const char* name) 
     return result;
 }
 
-std::vector<Stick> sticks_from(std::span<const echinus_stick> sticks) {
-    std::vector<Stick> result;
-    for (const echinus_stick& stick : sticks) {
-        if (stick.kind >= kStickKindCount)
-            throw WrongArgument("stick " + std::to_string(result.size()) + " is of kind " +
-                                std::to_string(stick.kind) + "; expected 0 to 2");
-        result.push_back({stick.a, stick.b, stick.rest_length, static_cast<StickKind>(stick.kind)});
+std::vector<DistanceConstraint> constraints_from(std::span<const echinus_distance_constraint> constraints) {
+    std::vector<DistanceConstraint> result;
+    for (const echinus_distance_constraint& constraint : constraints) {
+        if (constraint.kind >= kConstraintKindCount)
+            throw WrongArgument("constraint " + std::to_string(result.size()) + " is of kind " +
+                                std::to_string(constraint.kind) + "; expected 0 to 2");
+        result.push_back({constraint.a, constraint.b, constraint.rest_length,
+                          static_cast<ConstraintKind>(constraint.kind)});
     }
     return result;
 }
@@ -87,7 +90,8 @@ Deformable deformable_from(const echinus_deformable_arrays& arrays) {
         .inverse_masses = arrays.inverse_masses == nullptr
                               ? std::vector<float>(count, 1.0F)
                               : copy_of<float>(arrays.inverse_masses, count, "inverse_masses"),
-        .sticks = sticks_from(values_at(arrays.sticks, arrays.stick_count, "sticks")),
+        .constraints =
+            constraints_from(values_at(arrays.constraints, arrays.constraint_count, "constraints")),
         .faces = faces_from(arrays.faces, arrays.face_count, "faces"),
         .attachments = copy_of<Attachment>(arrays.attachments, arrays.attachment_count, "attachments"),
         .tetrahedra = copy_of<ElasticTetrahedron>(arrays.tetrahedra, arrays.tetrahedron_count, "tetrahedra"),
@@ -104,7 +108,7 @@ void require_own_particles(const Deformable& part, std::size_t number) {
                                                        " refers to particle " + std::to_string(particle) +
                                                        " of " + std::to_string(part.particle_count()));
     };
-    for (const Stick& s : part.sticks)
+    for (const DistanceConstraint& s : part.constraints)
         for (const std::uint32_t particle : {s.a, s.b}) require_there(particle, "a distance constraint");
     for (const Triangle& face : part.faces)
         for (const std::uint32_t particle : face) require_there(particle, "a face");

@@ -8,17 +8,17 @@
 
 namespace echinus::c {
 
-ECHINUS_REQUIRE_NO_PADDING_AFTER(echinus_simulation_profile, squeezed_count);
+ECHINUS_REQUIRE_NO_PADDING_AFTER(echinus_simulation_profile, unresolved_count);
 
 namespace {
 
 echinus_simulation_profile as_c(const SimulationProfile& profile) {
     const auto& [integration_seconds, constraint_seconds, collision_seconds, query_count, contact_count,
                  map_query_count, rescued_count, lost_count, truncated_count, measured_pair_count,
-                 squeezed_count] = profile;
+                 unresolved_count] = profile;
     return {0,           integration_seconds, constraint_seconds,  collision_seconds,
             query_count, contact_count,       map_query_count,     rescued_count,
-            lost_count,  truncated_count,     measured_pair_count, squeezed_count};
+            lost_count,  truncated_count,     measured_pair_count, unresolved_count};
 }
 
 /// @throws WrongArgument for null

@@ -52,9 +52,9 @@ class Deformable:
         return self._deformable.tetrahedra
 
     @property
-    def stick_count(self) -> int:
+    def constraint_count(self) -> int:
         """The number of distance constraints."""
-        return self._deformable.stick_count
+        return self._deformable.constraint_count
 
     @property
     def mesh(self) -> Mesh:
@@ -69,7 +69,7 @@ class Deformable:
 
     def __repr__(self) -> str:
         return (
-            f"<echinus.Deformable: {len(self)} particles, {len(self.faces)} faces, {self.stick_count} sticks,"
+            f"<echinus.Deformable: {len(self)} particles, {len(self.faces)} faces, {self.constraint_count} constraints,"
             f" {len(self.tetrahedra)} tetrahedra>"
         )
 

@@ -79,7 +79,7 @@ class SimulationProfile:
         With surface collision: number of times that the displacement of a particle was cut short to avoid a contact.
     measured_pair_count
         With surface collision: number of pairs whose distance was measured.
-    squeezed_count
+    unresolved_count
         Unresolved pairs of elements, summed over all steps: no free space was proven. If 0, no faces intersect.
     """
 
@@ -93,7 +93,7 @@ class SimulationProfile:
     lost_count: int
     truncated_count: int
     measured_pair_count: int
-    squeezed_count: int
+    unresolved_count: int
 
 
 class Simulation:

@@ -42,7 +42,7 @@ void for_each_part(const Use& use) {
     use(&Deformable::positions);
     use(&Deformable::velocities);
     use(&Deformable::inverse_masses);
-    use(&Deformable::sticks);
+    use(&Deformable::constraints);
     use(&Deformable::faces);
     use(&Deformable::attachments);
     use(&Deformable::tetrahedra);
@@ -104,7 +104,7 @@ void bind_deformables(py::module_& module) {
         .def_property_readonly(
             "tetrahedra",
             [](const py::object& self) { return view_of(self.cast<const Deformable&>().tetrahedra, self); })
-        .def_property_readonly("stick_count", [](const Deformable& d) { return d.sticks.size(); })
+        .def_property_readonly("constraint_count", [](const Deformable& d) { return d.constraints.size(); })
         .def("parts", parts_of);
     module.def("deformable_of", deformable_of);
     module.def("make_cloth", sheet);

@@ -66,7 +66,7 @@ py::dict describe(const SimulationProfile& p) {
     result["lost_count"] = p.lost_count;
     result["truncated_count"] = p.truncated_count;
     result["measured_pair_count"] = p.measured_pair_count;
-    result["squeezed_count"] = p.squeezed_count;
+    result["unresolved_count"] = p.unresolved_count;
     return result;
 }
 

@@ -42,7 +42,7 @@ export class Collision extends Handle {
         const { address } = this;
         return new Uint32Array(this.core.memory.buffer, this.core.call('wasm_collision_corrected', address) >>> 0, this.#correctedCount);
     }
-    get squeezedCount() {
+    get unresolvedCount() {
         return this.core.call('wasm_collision_unresolved_count', this.address);
     }
     get #correctedCount() {

@@ -513,7 +513,7 @@ export class Collision extends Deletable {
     /** The particles that the last correct() moved, ascending. */
     readonly corrected: Uint32Array;
     /** With `surfaces`: unresolved pairs of elements, for which no free space was proven. If 0, no faces intersect. */
-    readonly squeezedCount: number;
+    readonly unresolvedCount: number;
 
     /**
      * Moves a collider to a pose during the solver's next step, rotating along the shorter arc; then it
@@ -941,7 +941,7 @@ export interface SimulationProfile {
     /** Where surfaces collide: vertex-face and edge-edge pairs whose distance was measured. */
     measuredPairCount: number;
     /** Unresolved pairs of elements, for which no free space was proven, summed over all steps. If 0, no faces intersect. */
-    squeezedCount: number;
+    unresolvedCount: number;
 }
 
 /** point_world = rotation applied to (scale * point_local), + position. */

@@ -54,7 +54,7 @@ export const collider = { bytes: 136, members: {
 } };
 export const deformableArrays = { bytes: 60, members: {
     size: [0, 'Uint32'], particleCount: [4, 'Uint32'], positions: [8, 'Uint32'], velocities: [12, 'Uint32'],
-    inverseMasses: [16, 'Uint32'], sticks: [20, 'Uint32'], stickCount: [24, 'Uint32'], faces: [28, 'Uint32'],
+    inverseMasses: [16, 'Uint32'], constraints: [20, 'Uint32'], constraintCount: [24, 'Uint32'], faces: [28, 'Uint32'],
     faceCount: [32, 'Uint32'], attachments: [36, 'Uint32'], attachmentCount: [40, 'Uint32'], tetrahedra: [44, 'Uint32'],
     tetrahedronCount: [48, 'Uint32'], filters: [52, 'Uint32'], filterCount: [56, 'Uint32'],
 } };
@@ -62,7 +62,7 @@ export const simulationProfile = { bytes: 96, members: {
     size: [0, 'Uint32'], integrationSeconds: [8, 'Float64'], constraintSeconds: [16, 'Float64'],
     collisionSeconds: [24, 'Float64'], queryCount: [32, 'BigUint64'], contactCount: [40, 'BigUint64'],
     mapQueryCount: [48, 'BigUint64'], rescuedCount: [56, 'BigUint64'], lostCount: [64, 'BigUint64'],
-    truncatedCount: [72, 'BigUint64'], measuredPairCount: [80, 'BigUint64'], squeezedCount: [88, 'BigUint64'],
+    truncatedCount: [72, 'BigUint64'], measuredPairCount: [80, 'BigUint64'], unresolvedCount: [88, 'BigUint64'],
 } };
 export const contactPoint = { bytes: 112, members: {
     position: [0, 'Float64', 3], normal: [24, 'Float64', 3], gap: [48, 'Float64'], normalImpulse: [56, 'Float64'],

@@ -86,8 +86,8 @@ static_assert(sizeof(echinus_deformable_arrays) == 60 && offsetof(echinus_deform
               offsetof(echinus_deformable_arrays, positions) == 8 &&
               offsetof(echinus_deformable_arrays, velocities) == 12 &&
               offsetof(echinus_deformable_arrays, inverse_masses) == 16 &&
-              offsetof(echinus_deformable_arrays, sticks) == 20 &&
-              offsetof(echinus_deformable_arrays, stick_count) == 24 &&
+              offsetof(echinus_deformable_arrays, constraints) == 20 &&
+              offsetof(echinus_deformable_arrays, constraint_count) == 24 &&
               offsetof(echinus_deformable_arrays, faces) == 28 &&
               offsetof(echinus_deformable_arrays, face_count) == 32 &&
               offsetof(echinus_deformable_arrays, attachments) == 36 &&
@@ -107,7 +107,7 @@ static_assert(sizeof(echinus_simulation_profile) == 96 && offsetof(echinus_simul
               offsetof(echinus_simulation_profile, lost_count) == 64 &&
               offsetof(echinus_simulation_profile, truncated_count) == 72 &&
               offsetof(echinus_simulation_profile, measured_pair_count) == 80 &&
-              offsetof(echinus_simulation_profile, squeezed_count) == 88);
+              offsetof(echinus_simulation_profile, unresolved_count) == 88);
 static_assert(sizeof(echinus_contact_point) == 112 && offsetof(echinus_contact_point, position) == 0 &&
               offsetof(echinus_contact_point, normal) == 24 && offsetof(echinus_contact_point, gap) == 48 &&
               offsetof(echinus_contact_point, normal_impulse) == 56 &&

@@ -131,14 +131,14 @@ def triangles(folder):
 def surfaces(folder):
     results = Results(folder, "surfaces")
     rows = [["scene, contact of", "particles", "pairs with the model", "own pairs", "frames judged, of them by CGAL", "at rest in frame", "strain, %", "most ever, %",
-             "truncated a frame", "most", "squeezed", "least gap"]]
+             "truncated a frame", "most", "unresolved", "least gap"]]
     times = [["scene, contact of", "particles", "ms a frame, mean", "99 %", "worst", "ratio"]]
     for r in results.records:
         name = f"{r['scene']}: {r['method']}"
         rest = r["frames"] if r["rested"] == "yes" else f"not in {r['frames']}"
         judged = f"{r['judged_frames']}, {r['cgal_frames']}" + (f" ({r['judges_differ']})" if r["judges_differ"] != "0" else "")
         rows.append([name, r["particles"], r["model_pairs"], r["own_pairs"], judged, rest, strain(r), number(r["strain_ever"], 100),
-                     number(r["truncated_mean"]), r["truncated_most"], r["squeezed"], number(r["gap_least"])])
+                     number(r["truncated_mean"]), r["truncated_most"], r["unresolved"], number(r["gap_least"])])
         times.append([name, r["particles"]] + [number(r[c]) for c in ("frame_ms", "frame_ms_99", "frame_ms_worst", "ratio")])
     return {"surfaces": table(rows), "surfaces times": table(times), "surfaces machine": results.machine,
             "surfaces commit": results.commit}
@@ -297,11 +297,11 @@ def reproduction(folder):
                                                       float(r["wrong_C"]))])
         sizes.append(f"**{mesh}**\n\n{table(size_rows)}")
         wrong.append(f"**{mesh}**\n\n{table(wrong_rows)}")
-    rows = [["scene", "particles", "sticks", "iterations", "queries per frame", "ns per query", "ms per frame",
+    rows = [["scene", "particles", "constraints", "iterations", "queries per frame", "ns per query", "ms per frame",
              "frames per second", "frames to rest", "inside at rest", "deepest / R"]]
     for name in ("horse", "torus"):
         r = json.loads(pathlib.Path(f"out/reproduction/{name}/report.json").read_text())
-        rows.append([name, r["particles"], r["sticks"], r["iterations"], round(r["queries_per_frame"]),
+        rows.append([name, r["particles"], r["constraints"], r["iterations"], round(r["queries_per_frame"]),
                      number(r["ns_per_query"]), number(r["ms_per_frame"]["total"]), number(r["frames_per_second"]),
                      r["frames_to_rest"] or "not reached", r["inside_at_rest"], number(r["deepest"]["in_radii"])])
     return {"sizes": "\n\n".join(sizes), "wrong sides": "\n\n".join(wrong), "rates": table(rows),

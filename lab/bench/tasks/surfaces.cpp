@@ -337,7 +337,7 @@ class Runner {
             {"strain_ever", fmt::format("{:.4g}", strain_ever_)},
             {"truncated_mean", fmt::format("{:.4g}", double(profile.truncated_count) / simulation_.frame())},
             {"truncated_most", fmt::format("{}", truncated_most_)},
-            {"squeezed", fmt::format("{}", profile.squeezed_count)},
+            {"unresolved", fmt::format("{}", profile.unresolved_count)},
             {"gap_least", fmt::format("{:.4g}", least_gap(simulation_))},
             {"frame_ms", fmt::format("{:.4g}", mean_ms())},
             {"frame_ms_99", fmt::format("{:.4g}", percentile_99(times))},
@@ -440,7 +440,7 @@ Records measure_surfaces(const Setting& setting) {
     Records records({"scene",          "particles",   "method",         "model_pairs", "own_pairs",
                      "judged_frames",  "cgal_frames", "judges_differ",  "frames",      "rested",
                      "strain_mean",    "strain_99",   "strain_largest", "strain_ever", "truncated_mean",
-                     "truncated_most", "squeezed",    "gap_least",      "frame_ms",    "frame_ms_99",
+                     "truncated_most", "unresolved",  "gap_least",      "frame_ms",    "frame_ms_99",
                      "frame_ms_worst", "ratio"});
     if (setting.earlier)
         for (const Records::Record& record : setting.earlier->all()) records.add(record);

@@ -14,7 +14,7 @@ void require(bool condition, const std::string& sentence) {
     if (!condition) throw Error(ErrorCode::InvalidOptions, sentence);
 }
 
-/// 16 million particles: 1 GB of particles and sticks.
+/// 16 million particles: 1 GB of particles and constraints.
 constexpr std::uint64_t kMaxParticleCount = std::uint64_t{1} << 24;
 
 void require_possible(const ClothOptions& options) {
@@ -33,7 +33,7 @@ void require_possible(const ClothOptions& options) {
                                           " to pin; its last one is " + std::to_string(particle_count - 1));
 }
 
-/// Lays particles, sticks and faces of a sheet into a Deformable.
+/// Lays particles, constraints and faces of a sheet into a Deformable.
 class Weaver {
   public:
     explicit Weaver(const ClothOptions& options)
@@ -42,9 +42,9 @@ class Weaver {
     Deformable weave() {
         for (std::uint32_t row = 0; row < rows_; ++row) {
             add_particles(row);
-            add_sticks_along(row);
-            if (row >= 1) add_sticks_to_previous(row);
-            if (row >= 2) add_sticks_across(row);
+            add_constraints_along(row);
+            if (row >= 1) add_constraints_to_previous(row);
+            if (row >= 2) add_constraints_across(row);
         }
         for (const std::uint32_t pin : options_.pins) cloth_.inverse_masses[pin] = 0;
         return std::move(cloth_);
@@ -62,34 +62,34 @@ class Weaver {
         }
     }
 
-    void add_stick(std::uint32_t a, std::uint32_t b, StickKind kind) {
+    void add_constraint(std::uint32_t a, std::uint32_t b, ConstraintKind kind) {
         const Vec3d across = Vec3d(cloth_.positions[b]) - Vec3d(cloth_.positions[a]);
-        cloth_.sticks.push_back({a, b, static_cast<float>(length(across)), kind});
+        cloth_.constraints.push_back({a, b, static_cast<float>(length(across)), kind});
     }
 
-    /// Sticks of one row. Neighbouring ones share a particle, so every second is laid first.
-    void add_sticks_along(std::uint32_t row) {
+    /// Constraints of one row. Neighbouring ones share a particle, so every second is laid first.
+    void add_constraints_along(std::uint32_t row) {
         for (std::uint32_t first : {0U, 1U})
             for (std::uint32_t column = first; column + 1 < columns_; column += 2)
-                add_stick(index(row, column), index(row, column + 1), StickKind::Structural);
+                add_constraint(index(row, column), index(row, column + 1), ConstraintKind::Structural);
         for (std::uint32_t first : {0U, 2U})
             for (std::uint32_t column = first; column + 2 < columns_; column += column % 2 == 0 ? 1 : 3)
-                add_stick(index(row, column), index(row, column + 2), StickKind::Bending);
+                add_constraint(index(row, column), index(row, column + 2), ConstraintKind::Bending);
     }
 
-    void add_sticks_to_previous(std::uint32_t row) {
+    void add_constraints_to_previous(std::uint32_t row) {
         for (std::uint32_t column = 0; column < columns_; ++column)
-            add_stick(index(row - 1, column), index(row, column), StickKind::Structural);
+            add_constraint(index(row - 1, column), index(row, column), ConstraintKind::Structural);
         for (std::uint32_t column = 0; column + 1 < columns_; ++column)
-            add_stick(index(row - 1, column), index(row, column + 1), StickKind::Shear);
+            add_constraint(index(row - 1, column), index(row, column + 1), ConstraintKind::Shear);
         for (std::uint32_t column = 0; column + 1 < columns_; ++column)
-            add_stick(index(row - 1, column + 1), index(row, column), StickKind::Shear);
+            add_constraint(index(row - 1, column + 1), index(row, column), ConstraintKind::Shear);
         for (std::uint32_t column = 0; column + 1 < columns_; ++column) add_square(row - 1, column);
     }
 
-    void add_sticks_across(std::uint32_t row) {
+    void add_constraints_across(std::uint32_t row) {
         for (std::uint32_t column = 0; column < columns_; ++column)
-            add_stick(index(row - 2, column), index(row, column), StickKind::Bending);
+            add_constraint(index(row - 2, column), index(row, column), ConstraintKind::Bending);
     }
 
     void add_square(std::uint32_t row, std::uint32_t column) {

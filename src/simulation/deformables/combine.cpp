@@ -59,10 +59,10 @@ void append(Deformable& to, const Deformable& part) {
         to.velocities.resize(to.particle_count());
     }
     append(to.inverse_masses, part.inverse_masses);
-    for (Stick stick : part.sticks) {
-        stick.a += first;
-        stick.b += first;
-        to.sticks.push_back(stick);
+    for (DistanceConstraint constraint : part.constraints) {
+        constraint.a += first;
+        constraint.b += first;
+        to.constraints.push_back(constraint);
     }
     for (Triangle face : part.faces) {
         for (std::uint32_t& corner : face) corner += first;

@@ -64,7 +64,7 @@ class Tailor {
         require_rest_shape();
         place_particles();
         weigh_particles();
-        add_sticks();
+        add_constraints();
         cloth_.faces = std::move(surface_.faces);
         return std::move(cloth_);
     }
@@ -142,23 +142,23 @@ class Tailor {
         return std::abs(dot(to_one, to_other)) <= kCosine * length(to_one) * length(to_other);
     }
 
-    void add_stick(std::uint32_t a, std::uint32_t b, StickKind kind) {
-        cloth_.sticks.push_back({a, b, static_cast<float>(distance(a, b)), kind});
+    void add_constraint(std::uint32_t a, std::uint32_t b, ConstraintKind kind) {
+        cloth_.constraints.push_back({a, b, static_cast<float>(distance(a, b)), kind});
     }
 
-    void add_sticks() {
+    void add_constraints() {
         std::vector<Hinge> diagonals, others;
         for (const Hinge& hinge : surface_.hinges) (is_diagonal(hinge) ? diagonals : others).push_back(hinge);
         std::set<std::array<std::uint32_t, 2>> shear;
         for (const auto& [a, b, c, d] : diagonals) shear.insert({std::min(a, b), std::max(a, b)});
         for (const auto& edge : surface_.edges)
-            if (!shear.contains(edge)) add_stick(edge[0], edge[1], StickKind::Structural);
-        for (const auto& [a, b] : options_.threads) add_stick(a, b, StickKind::Structural);
+            if (!shear.contains(edge)) add_constraint(edge[0], edge[1], ConstraintKind::Structural);
+        for (const auto& [a, b] : options_.threads) add_constraint(a, b, ConstraintKind::Structural);
         for (const auto& [a, b, c, d] : diagonals) {
-            add_stick(a, b, StickKind::Shear);
-            add_stick(c, d, StickKind::Shear);
+            add_constraint(a, b, ConstraintKind::Shear);
+            add_constraint(c, d, ConstraintKind::Shear);
         }
-        for (const auto& [a, b, c, d] : others) add_stick(c, d, StickKind::Bending);
+        for (const auto& [a, b, c, d] : others) add_constraint(c, d, ConstraintKind::Bending);
         stiffen_threads();
     }
 
@@ -169,7 +169,8 @@ class Tailor {
             ends_around[b].push_back(a);
         }
         for (const auto& ends : ends_around)
-            if (ends.size() == 2 && ends[0] != ends[1]) add_stick(ends[0], ends[1], StickKind::Bending);
+            if (ends.size() == 2 && ends[0] != ends[1])
+                add_constraint(ends[0], ends[1], ConstraintKind::Bending);
     }
 
     const TriangleMesh& mesh_;

@@ -13,33 +13,34 @@ namespace echinus {
 namespace {
 
 /// In the deformable's order, without those between two pinned particles.
-std::vector<JakobsenStick> jakobsen_sticks(const Deformable& deformable,
-                                           const std::array<double, kStickKindCount>& stiffness) {
-    std::vector<JakobsenStick> sticks;
-    for (const Stick& stick : deformable.sticks) {
-        const double inverse_mass_a = deformable.inverse_masses[stick.a];
-        const double inverse_mass_b = deformable.inverse_masses[stick.b];
+std::vector<JakobsenConstraint>
+jakobsen_constraints(const Deformable& deformable,
+                     const std::array<double, kConstraintKindCount>& stiffness) {
+    std::vector<JakobsenConstraint> constraints;
+    for (const DistanceConstraint& constraint : deformable.constraints) {
+        const double inverse_mass_a = deformable.inverse_masses[constraint.a];
+        const double inverse_mass_b = deformable.inverse_masses[constraint.b];
         const double sum = inverse_mass_a + inverse_mass_b;
         if (sum == 0) continue;
         // Jakobsen 2001, section 4.
-        const double share = stiffness[static_cast<std::size_t>(stick.kind)];
-        sticks.push_back({stick.a, stick.b, stick.rest_length,
-                          static_cast<float>(share * inverse_mass_a / sum),
-                          static_cast<float>(share * inverse_mass_b / sum)});
+        const double share = stiffness[static_cast<std::size_t>(constraint.kind)];
+        constraints.push_back({constraint.a, constraint.b, constraint.rest_length,
+                               static_cast<float>(share * inverse_mass_a / sum),
+                               static_cast<float>(share * inverse_mass_b / sum)});
     }
-    return sticks;
+    return constraints;
 }
 
-/// One relaxation of all sticks, one after the other.
-void relax(std::span<const JakobsenStick> sticks, PointArrays& positions) noexcept {
-    for (const JakobsenStick& stick : sticks) {
-        const Vec3f a = positions[stick.a], b = positions[stick.b];
+/// One relaxation of all constraints, one after the other.
+void relax(std::span<const JakobsenConstraint> constraints, PointArrays& positions) noexcept {
+    for (const JakobsenConstraint& constraint : constraints) {
+        const Vec3f a = positions[constraint.a], b = positions[constraint.b];
         const Vec3f across = b - a;
         // The smallest float keeps particles at one place from dividing by zero and is lost in all else.
         const float distance = std::sqrt(dot(across, across) + std::numeric_limits<float>::min());
-        const Vec3f correction = across * (1 - stick.rest_length / distance);
-        positions.set(stick.a, a + correction * stick.share_a);
-        positions.set(stick.b, b - correction * stick.share_b);
+        const Vec3f correction = across * (1 - constraint.rest_length / distance);
+        positions.set(constraint.a, a + correction * constraint.share_a);
+        positions.set(constraint.b, b - correction * constraint.share_b);
     }
 }
 
@@ -78,7 +79,7 @@ JakobsenSolver::JakobsenSolver(Deformable deformable_in, std::vector<Collider> c
                                const SimulationOptions& options_in)
     : Solver(std::move(deformable_in), std::move(colliders_in), options_in),
       particles_(deformable, options.time_step),
-      sticks_(jakobsen_sticks(deformable, options.jakobsen().stiffness)),
+      constraints_(jakobsen_constraints(deformable, options.jakobsen().stiffness)),
       collisions_(deformable, colliders, particles_, options) {}
 
 void JakobsenSolver::step() {
@@ -88,7 +89,7 @@ void JakobsenSolver::step() {
     integrate();
     move_colliders();
     for (std::uint32_t iteration = 0; iteration < options.jakobsen().iteration_count; ++iteration) {
-        relax_sticks();
+        relax_constraints();
         collide();
     }
     bounds_.require_ways(particles_, frame);
@@ -129,9 +130,9 @@ void JakobsenSolver::move_colliders() {
     attachments_.follow(colliders, deforming_, 1, particles_.positions);
 }
 
-void JakobsenSolver::relax_sticks() {
+void JakobsenSolver::relax_constraints() {
     const Stopwatch stopwatch(profile.constraint_seconds);
-    relax(sticks_, particles_.positions);
+    relax(constraints_, particles_.positions);
 }
 
 void JakobsenSolver::collide() {

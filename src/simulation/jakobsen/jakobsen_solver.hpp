@@ -10,8 +10,8 @@
 
 namespace echinus {
 
-/// A stick as its relaxation needs it.
-struct JakobsenStick {
+/// A constraint as its relaxation needs it.
+struct JakobsenConstraint {
     std::uint32_t a, b;
     float rest_length;
     float share_a, share_b; ///< of its error, by the masses and the stiffness
@@ -41,8 +41,8 @@ class Wind {
     std::vector<Gust> gusts_; ///< of each particle
 };
 
-/// The paper's simulation (section 2.3), which is that of Jakobsen (2001): Verlet integration, then sticks
-/// relaxed one after the other and collision of the particles in each relaxation.
+/// The paper's simulation (section 2.3), which is that of Jakobsen (2001): Verlet integration, then
+/// constraints relaxed one after the other and collision of the particles in each relaxation.
 class JakobsenSolver : public Solver {
   public:
     /// @throws Error InvalidOptions
@@ -66,7 +66,7 @@ class JakobsenSolver : public Solver {
     void begin_frame();
     void integrate();
     void move_colliders();
-    void relax_sticks();
+    void relax_constraints();
     void collide();
     void keep_free();
     void publish();
@@ -74,7 +74,7 @@ class JakobsenSolver : public Solver {
     void judge_frame();
 
     Particles particles_;
-    std::vector<JakobsenStick> sticks_;
+    std::vector<JakobsenConstraint> constraints_;
     Collisions collisions_;
     Wind wind_;
 };

@@ -102,14 +102,15 @@ void require_apart(const Deformable& deformable, const TriangleMesh& surface, co
         require_outside(deformable, passes, with_map(collider, *map_of_surface(collider)), options, name);
 }
 
-/// Layers that could come no nearer to each other than this would hold the deformable where it is.
+/// Layers that could come no nearer to each other than this would hold the deformable where it is. Particles
+/// without edges have no layers.
 void require_resolved(const Deformable& deformable, const Elements& elements) {
     float extent = 0;
     for (const Vec3f& v : deformable.positions)
         extent = std::max({extent, std::abs(v.x), std::abs(v.y), std::abs(v.z)});
     const float edge_length = mean_edge_length(elements, deformable.positions);
     const float least_gap = extent * threshold::kLeastGap;
-    if (!(least_gap > edge_length * threshold::kMostSelfThickness)) return;
+    if (edge_length == 0 || !(least_gap > edge_length * threshold::kMostSelfThickness)) return;
     throw Error(ErrorCode::InvalidOptions,
                 "the deformable begins " + std::to_string(extent) +
                     " from the origin, where floats separate its layers only from a distance of " +

@@ -138,14 +138,15 @@ void require_valid(const Deformable& deformable) {
             fail("particle " + std::to_string(i) +
                  " has a rest position that is not finite, or farther than 1e15 from the origin along an "
                  "axis");
-    for (std::size_t i = 0; i < deformable.sticks.size(); ++i) {
-        const Stick& stick = deformable.sticks[i];
-        if (stick.a >= count || stick.b >= count || stick.a == stick.b)
-            fail("stick " + std::to_string(i) + " joins particles " + std::to_string(stick.a) + " and " +
-                 std::to_string(stick.b) + "; it needs two different ones of " + std::to_string(count));
-        if (!(stick.rest_length >= 0) || !std::isfinite(stick.rest_length) ||
-            static_cast<std::size_t>(stick.kind) >= kStickKindCount)
-            fail("stick " + std::to_string(i) + " has a rest length or a kind out of range");
+    for (std::size_t i = 0; i < deformable.constraints.size(); ++i) {
+        const DistanceConstraint& constraint = deformable.constraints[i];
+        if (constraint.a >= count || constraint.b >= count || constraint.a == constraint.b)
+            fail("constraint " + std::to_string(i) + " joins particles " + std::to_string(constraint.a) +
+                 " and " + std::to_string(constraint.b) + "; it needs two different ones of " +
+                 std::to_string(count));
+        if (!(constraint.rest_length >= 0) || !std::isfinite(constraint.rest_length) ||
+            static_cast<std::size_t>(constraint.kind) >= kConstraintKindCount)
+            fail("constraint " + std::to_string(i) + " has a rest length or a kind out of range");
     }
     for (std::size_t i = 0; i < deformable.tetrahedra.size(); ++i)
         require_valid(deformable.tetrahedra[i], count, "tetrahedron " + std::to_string(i));

@@ -67,7 +67,8 @@ std::uint64_t hash_of(const Deformable& deformable, std::uint64_t start_hash) {
     hasher.add(start_hash);
     hasher.add_all(deformable.inverse_masses);
     hasher.add_all(deformable.faces);
-    for (const Stick& stick : deformable.sticks) hasher.add(stick.a, stick.b, stick.rest_length, stick.kind);
+    for (const DistanceConstraint& constraint : deformable.constraints)
+        hasher.add(constraint.a, constraint.b, constraint.rest_length, constraint.kind);
     for (const Attachment& attachment : deformable.attachments)
         hasher.add(attachment.particle, attachment.collider);
     std::set<std::pair<std::uint32_t, std::uint32_t>> filters; // in any order, some perhaps twice

@@ -21,7 +21,7 @@ void Solver::archive_counts(StateArchive& state) {
     state.value(largest_speed);
     for (std::uint64_t* count : {&profile.query_count, &profile.contact_count, &profile.map_query_count,
                                  &profile.rescued_count, &profile.lost_count, &profile.truncated_count,
-                                 &profile.measured_pair_count, &profile.squeezed_count})
+                                 &profile.measured_pair_count, &profile.unresolved_count})
         state.value(*count);
 }
 

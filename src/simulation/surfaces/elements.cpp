@@ -94,8 +94,9 @@ Elements elements_of(const Deformable& deformable, std::span<const std::uint8_t>
     for (const Triangle& face : deformable.faces)
         if (!passes_through(face, passes)) faces.push_back(face);
     std::vector<Edge> threads;
-    for (const auto& [a, b, rest_length, kind] : deformable.sticks)
-        if (kind == StickKind::Structural && !passes_through({a, b, b}, passes)) threads.push_back({a, b});
+    for (const auto& [a, b, rest_length, kind] : deformable.constraints)
+        if (kind == ConstraintKind::Structural && !passes_through({a, b, b}, passes))
+            threads.push_back({a, b});
     std::vector<bool> inner(passes.begin(), passes.end());
     inner.resize(deformable.particle_count(), false);
     for (const ElasticTetrahedron& tetrahedron : deformable.tetrahedra)

@@ -51,8 +51,8 @@ struct Elements {
     }
 };
 
-/// Its faces, and the structural sticks that are no edges of faces: threads. Particles inside a soft body
-/// have none, nor have those that pass.
+/// Its faces, and the structural constraints that are no edges of faces: threads. Particles inside a soft
+/// body have none, nor have those that pass.
 /// @param passes  [particle_count] 1 for particles that a collider lets through, or none
 Elements elements_of(const Deformable& deformable, std::span<const std::uint8_t> passes = {});
 

@@ -68,7 +68,7 @@ export type Pose = Pick<ColliderState, 'position' | 'rotation'>;
 
 export interface Figures {
     particles: number;
-    sticks: number;
+    constraints: number;
     solver: string;
     iterations: number;
     time_step: number;

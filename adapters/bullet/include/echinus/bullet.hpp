@@ -310,8 +310,9 @@ class SoftBodyPair {
         contact.m_c1 = node.m_x - object->getWorldTransform().getOrigin();
         contact.m_c0 = impulse_matrix(node.m_im, rigid, contact.m_c1, seconds);
         contact.m_c2 = node.m_im * seconds;
-        const bool sticks = (slip - normal * approach).length2() < approach * approach * friction * friction;
-        contact.m_c3 = sticks ? btScalar(0) : 1 - friction;
+        const bool constraints =
+            (slip - normal * approach).length2() < approach * approach * friction * friction;
+        contact.m_c3 = constraints ? btScalar(0) : 1 - friction;
         contact.m_c4 = object->isStaticOrKinematicObject() ? body->m_cfg.kKHR : body->m_cfg.kCHR;
         body->m_rcontacts.push_back(contact);
         if (rigid != nullptr) rigid->activate();

@@ -918,20 +918,20 @@ ECHINUS_API echinus_status echinus_embedding_carry(const echinus_embedding* embe
 
 // ---- Deformables ----
 
-typedef enum echinus_stick_kind {
-    ECHINUS_STICK_STRUCTURAL = 0,
-    ECHINUS_STICK_SHEAR = 1,
-    ECHINUS_STICK_BENDING = 2
-} echinus_stick_kind;
-#define ECHINUS_STICK_KIND_COUNT 3
+typedef enum echinus_constraint_kind {
+    ECHINUS_CONSTRAINT_STRUCTURAL = 0,
+    ECHINUS_CONSTRAINT_SHEAR = 1,
+    ECHINUS_CONSTRAINT_BENDING = 2
+} echinus_constraint_kind;
+#define ECHINUS_CONSTRAINT_KIND_COUNT 3
 
 /// A distance constraint, which pulls or pushes two particles to a distance.
-typedef struct echinus_stick {
+typedef struct echinus_distance_constraint {
     uint32_t a, b;
     float rest_length; ///< not negative
-    uint8_t kind;      ///< an echinus_stick_kind
+    uint8_t kind;      ///< an echinus_constraint_kind
     uint8_t reserved[3];
-} echinus_stick;
+} echinus_distance_constraint;
 
 /// Fixes a particle to a collider of a simulation.
 typedef struct echinus_attachment {
@@ -966,8 +966,9 @@ typedef struct echinus_deformable_arrays {
     const float* positions;      ///< [3 particle_count]
     const float* velocities;     ///< [3 particle_count] units per second; NULL: at rest
     const float* inverse_masses; ///< [particle_count] 0 for a pinned particle; NULL means 1 for all
-    const echinus_stick* sticks; ///< in the order of relaxation; Newton uses only those of threads
-    size_t stick_count;
+    /// In the order of relaxation; Newton uses only those of threads
+    const echinus_distance_constraint* constraints;
+    size_t constraint_count;
     const uint32_t* faces; ///< [3 face_count]
     size_t face_count;
     const echinus_attachment* attachments; ///< of pinned particles, at most one for each
@@ -1152,7 +1153,7 @@ typedef struct echinus_simulation_options {
     double drag;
     /// Jakobsen only: share of a constraint's error that one relaxation removes, for structural, shear and
     /// bending constraints (0 to 1.99)
-    double stiffness[ECHINUS_STICK_KIND_COUNT];
+    double stiffness[ECHINUS_CONSTRAINT_KIND_COUNT];
     /// Distance that the deformable keeps from colliders, by default half the mean rest length of structural
     /// constraints (0 to 1e9), or ECHINUS_THICKNESS_CHOSEN
     double thickness;
@@ -1279,7 +1280,7 @@ typedef struct echinus_simulation_profile {
     uint64_t lost_count;
     uint64_t truncated_count;
     uint64_t measured_pair_count;
-    uint64_t squeezed_count;
+    uint64_t unresolved_count;
 } echinus_simulation_profile;
 
 /// @param profile  out; the caller sets its size
