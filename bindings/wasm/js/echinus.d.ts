@@ -821,8 +821,8 @@ export class Simulation extends Deletable {
     readonly particleCount: number;
     /** [3 particleCount] A read-only view of the simulation's own memory: get it afresh each time, as with a buffer. */
     readonly positions: Float32Array;
-    /** [3 particleCount] The positions of particles one frame ago at their present velocities. */
-    readonly previousPositions: Float32Array;
+    /** [3 particleCount] Units per second; a view like that of the positions. */
+    readonly velocities: Float32Array;
     /** [3 face_count] particles; a copy, constant over time. */
     readonly faces: Uint32Array;
     readonly frame: number;

@@ -37,7 +37,7 @@ const addressesOf = (core, maps) => Uint32Array.from(maps, (map) => requireMap(c
 
 export class Simulation extends Handle {
     #positions = null;
-    #previousPositions = null;
+    #velocities = null;
 
     constructor(core, address) {
         super(core, address, 'echinus_simulation_destroy');
@@ -63,11 +63,11 @@ export class Simulation extends Handle {
         if (this.#positions?.buffer !== this.core.memory.buffer) this.#positions = this.#view(this.core.call('echinus_simulation_positions', address));
         return this.#positions;
     }
-    get previousPositions() {
+    get velocities() {
         const { address } = this;
-        if (this.#previousPositions?.buffer !== this.core.memory.buffer)
-            this.#previousPositions = this.#view(this.core.ask(deformableArrays, 'echinus_simulation_read', address).previousPositions);
-        return this.#previousPositions;
+        if (this.#velocities?.buffer !== this.core.memory.buffer)
+            this.#velocities = this.#view(this.core.ask(deformableArrays, 'echinus_simulation_read', address).velocities);
+        return this.#velocities;
     }
     #view(first) {
         return new Float32Array(this.core.memory.buffer, first >>> 0, 3 * this.particleCount);
