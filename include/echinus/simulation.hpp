@@ -23,7 +23,7 @@ ECHINUS_EXPORT_BEGIN
 /// Simulation of deformable models, cloth and soft bodies. The default solver treats them as continuous
 /// materials in implicit steps, with contact and friction in the same energy (docs/mechanics.md). The other
 /// solver is that of the paper's simulations (section 2.3), after Jakobsen, "Advanced Character Physics" (GDC
-/// 2001): particles are moved by Verlet integration, distance constraints (*constraints*) between them are
+/// 2001): particles are moved by Verlet integration, distance constraints (*sticks*) between them are
 /// relaxed one after the other, and each relaxation includes collision with rigid models.
 namespace echinus {
 
@@ -36,7 +36,7 @@ enum class ConstraintKind : std::uint8_t {
 inline constexpr std::size_t kConstraintKindCount = 3;
 
 /// A distance constraint, which pulls or pushes two particles to the distance `rest_length`. The paper calls
-/// it a constraint.
+/// it a stick.
 struct DistanceConstraint {
     std::uint32_t a, b;
     float rest_length; ///< not negative

@@ -153,22 +153,6 @@ inline void read_thickness_options(JsonObject& object, SimulationOptions& o) {
         o.solver = jakobsen;
 }
 
-inline void read_surfaces_options(JsonObject& object, SimulationOptions& o) {
-    SolverKind kind = o.kind();
-    NewtonOptions newton;
-    if (const auto* held = std::get_if<NewtonOptions>(&o.solver)) newton = *held;
-    JakobsenOptions jakobsen;
-    if (const auto* held = std::get_if<JakobsenOptions>(&o.solver)) jakobsen = *held;
-    if (const auto word = object.read_word("collision", {"particles", "surfaces", "surfaces_and_self"}))
-        newton.collision = static_cast<CollisionMode>(*word);
-    object.read("untangle", newton.untangle);
-    if (kind != SolverKind::Newton) object.refuse_keys({"collision", "untangle"}, "solver", "newton");
-    if (kind == SolverKind::Newton)
-        o.solver = newton;
-    else
-        o.solver = jakobsen;
-}
-
 inline void read_newton_options(JsonObject& object, SimulationOptions& o) {
     SolverKind kind = o.kind();
     NewtonOptions newton;

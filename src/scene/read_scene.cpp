@@ -531,7 +531,12 @@ void read_surfaces(JsonObject& root, Scene& scene) {
     auto* const newton = std::get_if<NewtonOptions>(&options.solver);
     if (newton != nullptr && !is_exact) newton->collision = CollisionMode::Particles;
     read_former_collision(root, newton, scene);
-    read_surfaces_options(root, options);
+    if (const auto mode = root.read_word("collision", {"particles", "surfaces", "surfaces_and_self"})) {
+        if (newton != nullptr)
+            newton->collision = static_cast<CollisionMode>(*mode);
+        else if (*mode != 0)
+            root.refuse("collision", "\"particles\", or \"solver\" must be \"newton\"");
+    }
     const bool surfaces = options.surfaces_collide();
     for (const SceneCollider& collider : scene.colliders)
         if (collider.cache && !surfaces)
@@ -540,7 +545,10 @@ void read_surfaces(JsonObject& root, Scene& scene) {
                         : root.has("surface_collision") ? "surface_collision"
                                                         : "map",
                         "set so that surfaces collide, since a collider has a vertex cache");
-    if (newton != nullptr && newton->untangle && !surfaces)
+    bool untangles = false;
+    root.read("untangle", untangles);
+    if (newton != nullptr) newton->untangle = untangles;
+    if (untangles && !surfaces)
         root.refuse("untangle", "false, or \"collision\" must be \"surfaces\" or \"surfaces_and_self\"");
 }
 

@@ -440,3 +440,39 @@ TEST_F(CScenes, FindTheirFilesInTheFoldersThatAreNamed) {
 }
 
 } // namespace
+
+TEST(CSimulations, RefuseOptionsOfTheSolverThatIsNotChosen) {
+    const CDeformable sheet = c_small_sheet();
+    const auto created = [&](echinus_simulation_options options, CSimulation& simulation) {
+        return echinus_simulation_create(sheet.get(), nullptr, 0, &options, out(simulation));
+    };
+    echinus_simulation_options options;
+    echinus_simulation_options_init(&options, sizeof options);
+    CSimulation simulation;
+    options.drag = 0.1;
+    expect_refused(created(options, simulation), ECHINUS_INVALID_OPTIONS, "only jakobsen has");
+    options.solver = ECHINUS_SOLVER_JAKOBSEN;
+    options.time_step = 1.0 / 240;
+    expect_ok(created(options, simulation));
+    options.air_drag = 0;
+    expect_refused(created(options, simulation), ECHINUS_INVALID_OPTIONS, "only newton has");
+}
+
+TEST(CSimulations, HaveCollisionOfParticlesWithJakobsenWhetherThatIsSaidOrNot) {
+    const CDeformable sheet = c_small_sheet();
+    echinus_simulation_options options, read;
+    echinus_simulation_options_init(&options, sizeof options);
+    options.solver = ECHINUS_SOLVER_JAKOBSEN;
+    for (const auto mode : {ECHINUS_COLLISION_SURFACES_AND_SELF, ECHINUS_COLLISION_PARTICLES}) {
+        options.collision = mode;
+        CSimulation simulation;
+        expect_ok(echinus_simulation_create(sheet.get(), nullptr, 0, &options, out(simulation)));
+        read.size = sizeof read;
+        expect_ok(echinus_simulation_read_options(simulation.get(), &read));
+        EXPECT_EQ(read.collision, ECHINUS_COLLISION_PARTICLES);
+    }
+    options.collision = ECHINUS_COLLISION_SURFACES;
+    CSimulation simulation;
+    expect_refused(echinus_simulation_create(sheet.get(), nullptr, 0, &options, out(simulation)),
+                   ECHINUS_INVALID_OPTIONS, "only newton has");
+}

@@ -193,3 +193,20 @@ def test_threads_may_share_a_simulation():
         assert shared.profile.query_count >= 0
     alone.step(40)
     assert shared.frame == 40 and shared.state_hash == alone.state_hash
+
+
+def test_jakobsen_has_collision_of_particles_whether_that_is_said_or_not():
+    sheet = ech.make_cloth(column_count=5, row_count=5)
+    for given in ({}, {"collision": "particles"}):
+        simulation = ech.Simulation(sheet, solver="jakobsen", time_step=1 / 240, **given)
+        assert simulation.options.collision == "particles"
+    with pytest.raises(ech.Error, match="only newton has"):
+        ech.Simulation(sheet, solver="jakobsen", time_step=1 / 240, collision="surfaces")
+
+
+def test_a_scene_takes_no_mode_of_collision_but_the_three():
+    for wrong, error in ((5, TypeError), (b"surfaces", TypeError), ("self", ValueError)):
+        with pytest.raises(error, match="collision must be"):
+            ech.Simulation.from_scene(SHEET, collision=wrong)
+    with pytest.raises(ech.Error, match="untangle is True, and needs the collision of surfaces"):
+        ech.Simulation.from_scene(SHEET, collision="particles", untangle=True)

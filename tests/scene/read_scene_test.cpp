@@ -389,7 +389,7 @@ TEST(Scene, HasConstraintsAndParticlesOnlyUnderJakobsensSolver) {
         return refusal(text(cloth, rest));
     };
     EXPECT_EQ(refusal_of(R"("size": [1, 1])", R"(, "collision": "surfaces")"),
-              R"(a.json: collision is "surfaces"; it must be left out, or "solver" must be "newton")");
+              R"(a.json: collision is "surfaces"; it must be "particles", or "solver" must be "newton")");
     EXPECT_NE(refusal_of(R"("size": [1, 1])", R"(, "self_collision": true)").find("self_collision"),
               std::string::npos);
     EXPECT_NE(

@@ -235,11 +235,12 @@ TEST(Untangle, MovesNoPinnedParticleAndNamesWhatThatLeaves) {
                  [&] { Simulation(sheet, ball, kUntangled); });
     Deformable inside = sheet_at(0.1, 0.2, 5);
     inside.inverse_masses.assign(25, 0);
-    expect_error(ErrorCode::InvalidOptions,
-                 "25 particles begin inside collider 0, 25 of them pinned there; untangle could not move "
-                 "them out; the "
-                 "first is particle 0; move the start until they are apart, or set collision to particles",
-                 [&] { Simulation(inside, ball, kUntangled); });
+    expect_error(
+        ErrorCode::InvalidOptions,
+        "25 particles begin inside collider 0, 25 of them pinned there; untangle could not move "
+        "them out; the "
+        "first is particle 0; move the start until they are apart, or do without collision of surfaces",
+        [&] { Simulation(inside, ball, kUntangled); });
 }
 
 TEST(Untangle, MovesTheLayerThatIsNotPinned) {

@@ -263,7 +263,7 @@ std::string to_text(const SimulationResult& result) {
     const double radius = radius_of(result.colliders);
     std::string text = result.scene_name + "\n";
     const auto add = [&](const char* label, const std::string& value) {
-        text += fmt::format("  {:<22}{}\n", label, value);
+        text += fmt::format("  {:<24}{}\n", label, value);
     };
     add("particles, constraints",
         fmt::format("{}, {}", particle_count, simulation.deformable().constraints.size()));

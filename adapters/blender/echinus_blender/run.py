@@ -150,7 +150,7 @@ def in_words_of_the_panel(sentence, cloth_name):
     what = what.replace("the deformable begins", f"{cloth_name} begins", 1)
     what = what.replace(" particles begin", f" vertices of {cloth_name} begin", 1)
     what = what.replace("untangle could not", '"Part the Start" could not', 1)
-    is_itself = "set collision to surfaces" in remedy
+    is_itself = "do without self-collision" in remedy
     ways = ['tick "Part the Start"'] if "set untangle" in remedy else []
     ways += ["move them apart"] + (['switch "Self Collision" off'] if is_itself else [])
     finder = "Check Mesh" if is_itself else "Check Collisions in the first frame"

@@ -195,6 +195,7 @@ void for_each_option(C& c, Options& o, const Use& use) {
     if (const auto* held = std::get_if<NewtonOptions>(&o.solver)) newton = *held;
     JakobsenOptions jakobsen;
     if (const auto* held = std::get_if<JakobsenOptions>(&o.solver)) jakobsen = *held;
+    if (kind == SolverKind::Jakobsen) newton.collision = CollisionMode::Particles;
     use("time_step", c.time_step, o.time_step, Limits{1e-9, 1e9});
     use("solver", c.solver, kind, SolverKind::Jakobsen);
     use("iteration_count", c.iteration_count, jakobsen.iteration_count, Limits{1, 1e6});
@@ -234,6 +235,7 @@ void for_each_option(C& c, Options& o, const Use& use) {
             throw Error(ErrorCode::InvalidOptions,
                         "the solver is newton, and an option that only jakobsen has is set: one of "
                         "iteration_count, drag, stiffness, keep_free");
+        if (newton.collision == CollisionMode::Particles) newton.collision = NewtonOptions{}.collision;
         if (kind == SolverKind::Jakobsen && newton != NewtonOptions{})
             throw Error(ErrorCode::InvalidOptions,
                         "the solver is jakobsen, and an option that only newton has is set: one of "

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from echinus import _core
-from echinus._arguments import flag, index, json_of, list_of_kind, number, of_kind, path_of, quaternion, threads_of, vector, whole
+from echinus._arguments import flag, index, json_of, list_of_kind, number, of_kind, one_of, path_of, quaternion, threads_of, vector, whole
 from echinus._colliders import Collider, ColliderState, ContactPoints, Load, PoseKey, Vector, VertexCache, key_arguments
 from echinus._deformables import Deformable
 from echinus._errors import Error
@@ -154,9 +154,9 @@ class Simulation:
         Accept exact maps of open meshes, for which nothing is guaranteed. The collision of surfaces does not need
         this option.
     collision
-        ``newton`` only: the parts that collide. ``particles``: particles with models; ``surfaces``: edges and
-        faces, too: none of them intersects a model at the end of a frame, within limits; ``surfaces_and_self``:
-        faces do not intersect each other either.
+        The parts that collide, with ``jakobsen`` particles only. ``particles``: particles with models;
+        ``surfaces``: edges and faces, too: none of them intersects a model at the end of a frame, within limits;
+        ``surfaces_and_self``: faces do not intersect each other either.
     untangle
         ``newton`` only: separate a start that intersects, or is inside the model, before the first frame instead of
         refusing it; needs the collision of surfaces.
@@ -293,10 +293,10 @@ class Simulation:
         models = _one_for_each(model, parsed.collider_count)
         if collision is None and any(isinstance(given, DistanceMap) for given in models):
             collision = "particles"
+        if collision is not None:
+            parsed.choose_collision(one_of("collision", collision, ("particles", "surfaces", "surfaces_and_self")))
         if untangle is not None:
             parsed.choose_untangle(flag("untangle", untangle))
-        if collision is not None:
-            parsed.choose_collision(collision)
         parsed.allow_open_colliders = flag("allow_open_colliders", allow_open_colliders)
         threads = threads_of(threads)
         folders = [model_folders] if isinstance(model_folders, (str, bytes, os.PathLike)) else model_folders

@@ -108,6 +108,7 @@ void for_each_option(Options& o, const Use& use) {
     if (const auto* held = std::get_if<NewtonOptions>(&o.solver)) newton = *held;
     JakobsenOptions jakobsen;
     if (const auto* held = std::get_if<JakobsenOptions>(&o.solver)) jakobsen = *held;
+    if (kind == SolverKind::Jakobsen) newton.collision = CollisionMode::Particles;
     use("time_step", o.time_step);
     use("solver", kind, {"newton", "jakobsen"});
     use("iteration_count", jakobsen.iteration_count);
@@ -146,6 +147,7 @@ void for_each_option(Options& o, const Use& use) {
             throw Error(ErrorCode::InvalidOptions,
                         "the solver is newton, and an option that only jakobsen has is set: one of "
                         "iteration_count, drag, stiffness, keep_free");
+        if (newton.collision == CollisionMode::Particles) newton.collision = NewtonOptions{}.collision;
         if (kind == SolverKind::Jakobsen && newton != NewtonOptions{})
             throw Error(ErrorCode::InvalidOptions,
                         "the solver is jakobsen, and an option that only newton has is set: one of "

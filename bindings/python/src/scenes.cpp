@@ -113,12 +113,9 @@ simulation_of_scene(const Scene& scene, const std::vector<ColliderMap>& maps,
 
 constexpr std::array kCollisionModes{"particles", "surfaces", "surfaces_and_self"};
 
-/// @param mode  a word of SimulationOptions; where only particles collide, nothing is untangled
+/// @param mode  one of those words; where only particles collide, nothing is untangled
 void choose_collision(Scene& scene, const std::string& mode) {
     const auto found = std::find(kCollisionModes.begin(), kCollisionModes.end(), std::string_view(mode));
-    if (found == kCollisionModes.end())
-        throw py::value_error("collision is '" + mode +
-                              "'; it must be particles, surfaces or surfaces_and_self");
     auto* const newton = std::get_if<NewtonOptions>(&scene.simulation.solver);
     const auto chosen = static_cast<CollisionMode>(found - kCollisionModes.begin());
     if (newton == nullptr && chosen != CollisionMode::Particles)
@@ -137,6 +134,9 @@ void bind_options(py::class_<Scene>& scene) {
         .def("choose_collision", choose_collision)
         .def("choose_untangle",
              [](Scene& s, bool on) {
+                 if (on && !s.simulation.surfaces_collide())
+                     throw Error(ErrorCode::InvalidOptions,
+                                 "untangle is True, and needs the collision of surfaces");
                  if (auto* newton = std::get_if<NewtonOptions>(&s.simulation.solver)) newton->untangle = on;
              })
         .def_property(

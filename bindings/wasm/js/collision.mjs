@@ -90,7 +90,7 @@ function complete(options) {
 }
 
 /** The library's names of options, and those that they have here. */
-const OWN_NAMES = { surface_collision: 'surfaces', self_collision: 'selfCollision', allow_open_colliders: 'allowOpenColliders' };
+const OWN_NAMES = { allow_open_colliders: 'allowOpenColliders' };
 
 /** Calls `make`, whose errors name options. */
 function inOwnWords(make) {

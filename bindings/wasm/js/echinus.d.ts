@@ -622,9 +622,9 @@ export interface SceneDescription {
     };
     // Options: surfaces. By bindings/generate_options from bindings/options.toml: edit that.
     /**
-     * `newton` only: the parts that collide. `particles`: particles with models; `surfaces`: edges and faces, too: none
-     * of them intersects a model at the end of a frame, within limits; `surfaces_and_self`: faces do not intersect each
-     * other either. Default: `surfaces_and_self` with an exact map, otherwise `particles`.
+     * The parts that collide, with `jakobsen` particles only. `particles`: particles with models; `surfaces`: edges and
+     * faces, too: none of them intersects a model at the end of a frame, within limits; `surfaces_and_self`: faces do
+     * not intersect each other either. Default: `surfaces_and_self` with an exact map, otherwise `particles`.
      */
     collision?: 'particles' | 'surfaces' | 'surfaces_and_self';
     /**

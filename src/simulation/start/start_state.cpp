@@ -26,12 +26,12 @@ namespace {
 
 constexpr std::size_t kNamed = 3;
 
-/// @param mode  of collision, without this
+/// @param way  of colliding that asks for this
 /// @param pinned  untangle() moves no pinned particle
-std::string remedy(const SimulationOptions& options, const char* mode, bool pinned = false) {
+std::string remedy(const SimulationOptions& options, const char* way, bool pinned = false) {
     return std::string("; move the start until they are apart, ") +
-           (options.newton().untangle || pinned ? "" : "set untangle to separate them, ") +
-           "or set collision to " + mode;
+           (options.newton().untangle || pinned ? "" : "set untangle to separate them, ") + "or do without " +
+           way;
 }
 
 /// With edges and vertices as faces without area, after the faces.
@@ -52,14 +52,14 @@ std::string name_of(const Elements& elements, std::uint32_t number) {
 /// @param name  of one of them
 template <typename Item, typename Name>
 [[noreturn]] void refuse(const std::string& what, const std::vector<Item>& found, const char* noun,
-                         const SimulationOptions& options, const char* mode, const Name& name) {
+                         const SimulationOptions& options, const char* way, const Name& name) {
     std::string sentence = "the deformable begins " + what + " " + std::to_string(found.size()) + " " + noun +
                            (found.size() == 1 ? "" : "s") +
                            (options.newton().untangle ? " that untangle could not separate: " : ": ");
     for (std::size_t i = 0; i < std::min(found.size(), kNamed); ++i)
         sentence += (i == 0 ? "" : ", ") + name(found[i]);
     if (found.size() > kNamed) sentence += ", ...";
-    throw Error(ErrorCode::InvalidOptions, sentence + remedy(options, mode));
+    throw Error(ErrorCode::InvalidOptions, sentence + remedy(options, way));
 }
 
 void require_outside(const Deformable& deformable, std::span<const std::uint8_t> passes,
@@ -80,7 +80,7 @@ void require_outside(const Deformable& deformable, std::span<const std::uint8_t>
                     (pinned > 0 ? ", " + std::to_string(pinned) + " of them pinned there" : "") +
                     (options.newton().untangle ? "; untangle could not move them out" : "") +
                     "; the first is particle " + std::to_string(first - inside.begin()) +
-                    remedy(options, "particles", pinned > 0));
+                    remedy(options, "collision of surfaces", pinned > 0));
 }
 
 void require_apart(const Deformable& deformable, const TriangleMesh& surface, const Elements& elements,
@@ -89,13 +89,13 @@ void require_apart(const Deformable& deformable, const TriangleMesh& surface, co
     const ModelPairs pairs(collider, {passes.begin(), passes.end()});
     const auto [intersecting, touching] = pairs.with(surface);
     if (!intersecting.empty())
-        refuse("intersecting " + name + " in", intersecting, "pair", options, "particles",
+        refuse("intersecting " + name + " in", intersecting, "pair", options, "collision of surfaces",
                [&](const FacePair& pair) {
                    return name_of(elements, pair.a) + " of the deformable and face " +
                           std::to_string(pair.b) + " of " + name;
                });
     if (!touching.empty())
-        refuse("touching " + name + " with", touching, "face", options, "particles",
+        refuse("touching " + name + " with", touching, "face", options, "collision of surfaces",
                [&](std::uint32_t face) { return name_of(elements, face); });
     // Where nothing intersects, a piece is inside as a whole. An open surface has no inside.
     if (pairs.has_inside())
@@ -116,7 +116,7 @@ void require_resolved(const Deformable& deformable, const Elements& elements) {
                     " from the origin, where floats separate its layers only from a distance of " +
                     std::to_string(least_gap) + " on, and its mean edge length is " +
                     std::to_string(edge_length) +
-                    "; move the scene nearer to the origin, or set collision to surfaces");
+                    "; move the scene nearer to the origin, or do without self-collision");
 }
 
 } // namespace
@@ -134,7 +134,7 @@ void require_apart(const Deformable& deformable, const std::vector<Collider>& co
     if (!options.layers_collide()) return;
     const std::vector<FacePair> pairs = self_intersecting_pairs(surface);
     if (!pairs.empty())
-        refuse("intersecting itself in", pairs, "pair", options, "surfaces", [&](const FacePair& pair) {
+        refuse("intersecting itself in", pairs, "pair", options, "self-collision", [&](const FacePair& pair) {
             return name_of(elements, pair.a) + " and " + name_of(elements, pair.b);
         });
 }

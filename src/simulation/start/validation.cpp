@@ -280,8 +280,9 @@ void require_valid(const Collider& collider, const SimulationOptions& options, c
         fail(name + " has the exact map of an open mesh, with " +
              std::to_string(exact->view().border.size()) +
              " border edges, where particles get in; close the mesh (repair() mends some), use a distance "
-             "map, let surfaces collide, which needs no inside, or set allow_open_colliders and lose "
-             "particles");
+             "map, " +
+             (options.kind() == SolverKind::Newton ? "let surfaces collide, which needs no inside, " : "") +
+             "or set allow_open_colliders and lose particles");
 }
 
 } // namespace

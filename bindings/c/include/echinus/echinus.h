@@ -1170,9 +1170,9 @@ typedef struct echinus_simulation_options {
     /// Accept exact maps of open meshes, for which nothing is guaranteed. The collision of surfaces does not
     /// need this option
     int32_t allow_open_colliders;
-    /// Newton only: the parts that collide. particles: particles with models; surfaces: edges and faces, too:
-    /// none of them intersects a model at the end of a frame, within limits; surfaces_and_self: faces do not
-    /// intersect each other either
+    /// The parts that collide, with jakobsen particles only. particles: particles with models; surfaces:
+    /// edges and faces, too: none of them intersects a model at the end of a frame, within limits;
+    /// surfaces_and_self: faces do not intersect each other either
     echinus_collision_mode collision;
     /// Newton only: separate a start that intersects, or is inside the model, before the first frame instead
     /// of refusing it; needs the collision of surfaces
