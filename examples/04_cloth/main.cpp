@@ -15,7 +15,7 @@ int main() try {
     ClothOptions sheet{.column_count = 20, .row_count = 20, .width = 2.4, .height = 2.4};
     sheet.pose.translation = {0, 0, 1.1};
 
-    Simulation simulation(make_cloth(sheet), {Collider{.map = ExactMap::build(ball)}}, {});
+    Simulation simulation(make_cloth(sheet), {Collider{.map = ExactMap::build(ball)}}, {.thickness = 0.01});
     while (!simulation.at_rest() && simulation.frame() < kFrameLimit) simulation.step();
 
     const auto inside_count = std::ranges::count_if(
