@@ -301,6 +301,22 @@ struct SimulationOptions {
     }
 };
 
+/// The options of both solvers side by side and the choice between them, for programs whose options are flat,
+/// such as files, dialogs and other languages.
+struct SolverChoice {
+    SolverKind kind = SolverKind::Newton;
+    NewtonOptions newton{};
+    JakobsenOptions jakobsen{};
+
+    /// The options that are set, and the defaults of the other solver; with Jakobsen only particles collide.
+    explicit SolverChoice(const SimulationOptions& options);
+    /// The options of the chosen solver.
+    std::variant<NewtonOptions, JakobsenOptions> chosen() const;
+    /// @throws Error InvalidOptions, naming an option that only the other solver has and that does not have
+    /// its default. CollisionMode::Particles is accepted with Jakobsen
+    void require_defaults_of_other() const;
+};
+
 /// A force and a torque on a collider, in world axes.
 struct Load {
     Vec3d force;  ///< N

@@ -140,8 +140,8 @@ Contact contact(const Collider& collider, Vec3f point_world, float margin_world)
 
 void contains_batch(const Collider& collider, StridedSpan<const Vec3f> points_world,
                     std::span<std::uint8_t> inside, unsigned thread_count) noexcept {
-    if (!meets(points_world.size() == inside.size(),
-               "contains_batch: there are not as many inside as points"))
+    if (!is_met(points_world.size() == inside.size(),
+                "contains_batch: there are not as many inside as points"))
         return;
     const FrameChange frame(collider);
     for_each_piece(inside.size(), thread_count, [&](std::size_t first, std::size_t end) {
@@ -156,8 +156,8 @@ void contains_batch(const Collider& collider, StridedSpan<const Vec3f> points_wo
 
 void contacts_batch(const Collider& collider, StridedSpan<const Vec3f> points_world, float margin_world,
                     std::span<Contact> contacts, unsigned thread_count) noexcept {
-    if (!meets(points_world.size() == contacts.size(),
-               "contacts_batch: there are not as many contacts as points"))
+    if (!is_met(points_world.size() == contacts.size(),
+                "contacts_batch: there are not as many contacts as points"))
         return;
     const FrameChange frame(collider);
     for_each_piece(contacts.size(), thread_count, [&](std::size_t first, std::size_t end) {
@@ -252,13 +252,11 @@ std::vector<Vec3f> vertices_at(const VertexCache& cache, double seconds) {
 void sweep_batch(const Collider& collider, const RigidTransform& previous_pose,
                  StridedSpan<const Vec3f> from_world, StridedSpan<const Vec3f> to_world,
                  std::span<SweepHit> hits, unsigned thread_count) noexcept {
-    if (!meets(from_world.size() == hits.size() && to_world.size() == hits.size(),
-               "sweep_batch: starts, ends and hits differ in number"))
+    if (!is_met(from_world.size() == hits.size() && to_world.size() == hits.size(),
+                "sweep_batch: starts, ends and hits differ in number"))
         return;
-    for_each_piece(hits.size(), thread_count, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i)
-            hits[i] = sweep(collider, previous_pose, from_world[i], to_world[i]);
-    });
+    answer_each(hits, thread_count,
+                [&](std::size_t i) { return sweep(collider, previous_pose, from_world[i], to_world[i]); });
 }
 
 } // namespace echinus

@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <functional>
+#include <span>
 
 ECHINUS_EXPORT_BEGIN
 
@@ -36,6 +37,14 @@ void for_each_piece(std::size_t count, unsigned thread_count, const Answer& answ
     // fail.
     const std::function<void(std::size_t, std::size_t)> reference = std::cref(answer);
     for_each_piece(count, thread_count, reference);
+}
+
+/// Sets each answer of a batch to answer_at(i), as for_each_piece() divides them.
+template <typename Answer, typename AnswerAt>
+void answer_each(std::span<Answer> answers, unsigned thread_count, const AnswerAt& answer_at) noexcept {
+    for_each_piece(answers.size(), thread_count, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) answers[i] = answer_at(i);
+    });
 }
 
 /// Calls both, at the same time if two threads are available. Exceptions reach the caller.

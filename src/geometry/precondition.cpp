@@ -17,7 +17,7 @@ PreconditionHandler set_precondition_handler(PreconditionHandler handler) noexce
     return handler_of_preconditions.exchange(handler);
 }
 
-bool meets(bool condition, const char* sentence) {
+bool is_met(bool condition, const char* sentence) {
     if (condition) [[likely]]
         return true;
     const PreconditionHandler handler = handler_of_preconditions.load();

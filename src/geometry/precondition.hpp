@@ -8,7 +8,7 @@ namespace echinus {
 
 /// Calls the handler of violated preconditions (error.hpp) where the condition does not hold.
 /// @return whether it holds; otherwise the caller has to return
-bool meets(bool condition, const char* sentence);
+bool is_met(bool condition, const char* sentence);
 
 } // namespace echinus
 

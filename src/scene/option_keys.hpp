@@ -80,25 +80,18 @@ inline void read_body_options(JsonObject& object, SoftBodyOptions& o) {
 }
 
 inline void read_solver_options(JsonObject& object, SimulationOptions& o) {
-    SolverKind kind = o.kind();
-    NewtonOptions newton;
-    if (const auto* held = std::get_if<NewtonOptions>(&o.solver)) newton = *held;
-    JakobsenOptions jakobsen;
-    if (const auto* held = std::get_if<JakobsenOptions>(&o.solver)) jakobsen = *held;
+    SolverChoice choice(o);
     object.read("time_step", o.time_step, {1e-9, 1e9});
-    object.read("iterations", jakobsen.iteration_count, {1, 1e6});
-    object.read("newton_steps", newton.step_count, {1, 1000});
+    object.read("iterations", choice.jakobsen.iteration_count, {1, 1e6});
+    object.read("newton_steps", choice.newton.step_count, {1, 1000});
     object.read("gravity", o.gravity, {-1e9, 1e9});
     object.read("thread_count", o.thread_count, {0, 1024});
-    object.read("newton_tolerance", newton.tolerance, {0, 1});
+    object.read("newton_tolerance", choice.newton.tolerance, {0, 1});
     object.read("wind", o.wind, {-1e9, 1e9});
     object.read("wind_rate", o.wind_rate, {0, 1e9});
-    if (kind != SolverKind::Newton)
+    if (choice.kind != SolverKind::Newton)
         object.refuse_keys({"newton_steps", "newton_tolerance"}, "solver", "newton");
-    if (kind == SolverKind::Newton)
-        o.solver = newton;
-    else
-        o.solver = jakobsen;
+    o.solver = choice.chosen();
 }
 
 inline void read_rest_options(JsonObject& object, SimulationOptions& o) {
@@ -108,71 +101,43 @@ inline void read_rest_options(JsonObject& object, SimulationOptions& o) {
 }
 
 inline void read_material_options(JsonObject& object, SimulationOptions& o) {
-    SolverKind kind = o.kind();
-    NewtonOptions newton;
-    if (const auto* held = std::get_if<NewtonOptions>(&o.solver)) newton = *held;
-    JakobsenOptions jakobsen;
-    if (const auto* held = std::get_if<JakobsenOptions>(&o.solver)) jakobsen = *held;
-    object.read("drag", jakobsen.drag, {0, 1});
+    SolverChoice choice(o);
+    object.read("drag", choice.jakobsen.drag, {0, 1});
     object.read("friction", o.friction, {0, 1e9});
-    object.read("air_drag", newton.air_drag, {0, 1e6});
-    if (kind != SolverKind::Newton) object.refuse_keys({"air_drag"}, "solver", "newton");
-    if (kind == SolverKind::Newton)
-        o.solver = newton;
-    else
-        o.solver = jakobsen;
+    object.read("air_drag", choice.newton.air_drag, {0, 1e6});
+    if (choice.kind != SolverKind::Newton) object.refuse_keys({"air_drag"}, "solver", "newton");
+    o.solver = choice.chosen();
 }
 
 inline void read_jakobsen_options(JsonObject& object, SimulationOptions& o) {
-    SolverKind kind = o.kind();
-    NewtonOptions newton;
-    if (const auto* held = std::get_if<NewtonOptions>(&o.solver)) newton = *held;
-    JakobsenOptions jakobsen;
-    if (const auto* held = std::get_if<JakobsenOptions>(&o.solver)) jakobsen = *held;
-    object.read("structural", jakobsen.stiffness[0], {0, 1.99});
-    object.read("shear", jakobsen.stiffness[1], {0, 1.99});
-    object.read("bending", jakobsen.stiffness[2], {0, 1.99});
-    if (kind == SolverKind::Newton)
-        o.solver = newton;
-    else
-        o.solver = jakobsen;
+    SolverChoice choice(o);
+    object.read("structural", choice.jakobsen.stiffness[0], {0, 1.99});
+    object.read("shear", choice.jakobsen.stiffness[1], {0, 1.99});
+    object.read("bending", choice.jakobsen.stiffness[2], {0, 1.99});
+    o.solver = choice.chosen();
 }
 
 inline void read_thickness_options(JsonObject& object, SimulationOptions& o) {
-    SolverKind kind = o.kind();
-    NewtonOptions newton;
-    if (const auto* held = std::get_if<NewtonOptions>(&o.solver)) newton = *held;
-    JakobsenOptions jakobsen;
-    if (const auto* held = std::get_if<JakobsenOptions>(&o.solver)) jakobsen = *held;
+    SolverChoice choice(o);
     object.read("thickness", o.thickness, {0, 1e9});
-    object.read("self_thickness", newton.self_thickness, {0, 1e9});
-    if (kind != SolverKind::Newton) object.refuse_keys({"self_thickness"}, "solver", "newton");
-    if (kind == SolverKind::Newton)
-        o.solver = newton;
-    else
-        o.solver = jakobsen;
+    object.read("self_thickness", choice.newton.self_thickness, {0, 1e9});
+    if (choice.kind != SolverKind::Newton) object.refuse_keys({"self_thickness"}, "solver", "newton");
+    o.solver = choice.chosen();
 }
 
 inline void read_newton_options(JsonObject& object, SimulationOptions& o) {
-    SolverKind kind = o.kind();
-    NewtonOptions newton;
-    if (const auto* held = std::get_if<NewtonOptions>(&o.solver)) newton = *held;
-    JakobsenOptions jakobsen;
-    if (const auto* held = std::get_if<JakobsenOptions>(&o.solver)) jakobsen = *held;
-    object.read("density", newton.material.density, {1e-6, 1e6});
-    object.read("stretch_stiffness", newton.material.stretch_stiffness, {1e-6, 1e9});
-    object.read("shear_stiffness", newton.material.shear_stiffness, {0, 1e9});
-    object.read("bending_stiffness", newton.material.bending_stiffness, {0, 1e6});
-    object.read("damping", newton.material.damping, {0, 1e6});
-    object.read("pressure", newton.pressure, {0, 1e9});
-    if (kind != SolverKind::Newton)
+    SolverChoice choice(o);
+    object.read("density", choice.newton.material.density, {1e-6, 1e6});
+    object.read("stretch_stiffness", choice.newton.material.stretch_stiffness, {1e-6, 1e9});
+    object.read("shear_stiffness", choice.newton.material.shear_stiffness, {0, 1e9});
+    object.read("bending_stiffness", choice.newton.material.bending_stiffness, {0, 1e6});
+    object.read("damping", choice.newton.material.damping, {0, 1e6});
+    object.read("pressure", choice.newton.pressure, {0, 1e9});
+    if (choice.kind != SolverKind::Newton)
         object.refuse_keys(
             {"density", "stretch_stiffness", "shear_stiffness", "bending_stiffness", "damping", "pressure"},
             "solver", "newton");
-    if (kind == SolverKind::Newton)
-        o.solver = newton;
-    else
-        o.solver = jakobsen;
+    o.solver = choice.chosen();
 }
 
 } // namespace echinus

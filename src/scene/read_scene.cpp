@@ -30,6 +30,9 @@ constexpr double kUnitTolerance = 1e-4;
 constexpr double kJakobsenTimeStep = 1.0 / 240;
 constexpr double kRadiansPerDegree = std::numbers::pi / 180;
 
+/// The words of CollisionMode, in its order.
+constexpr std::array kModes{"particles", "surfaces", "surfaces_and_self"};
+
 /// With "small_holes" and without "hole_edges".
 constexpr std::uint32_t kUsualHoleEdges = 32;
 
@@ -512,14 +515,12 @@ void read_former_collision(JsonObject& root, NewtonOptions* newton, Scene& scene
         root.refuse("surface_collision", "false, or \"solver\" must be \"newton\"");
     if (root.has("collision"))
         root.refuse("collision", "the only key of its kind: leave surface_collision and self_collision out");
-    if (newton != nullptr)
-        newton->collision = self       ? CollisionMode::SurfacesAndSelf
-                            : surfaces ? CollisionMode::Surfaces
-                                       : CollisionMode::Particles;
-    const std::string instead = newton == nullptr ? "none: with jakobsen only particles collide"
-                                : self            ? "\"collision\": \"surfaces_and_self\""
-                                : surfaces        ? "\"collision\": \"surfaces\""
-                                                  : "\"collision\": \"particles\"";
+    const CollisionMode mode = self       ? CollisionMode::SurfacesAndSelf
+                               : surfaces ? CollisionMode::Surfaces
+                                          : CollisionMode::Particles;
+    if (newton != nullptr) newton->collision = mode;
+    const std::string instead =
+        std::string("\"collision\": \"") + kModes[static_cast<std::size_t>(mode)] + "\"";
     for (const char* key : {"surface_collision", "self_collision"})
         if (auto warning = root.warn_of_former(key, instead)) scene.warnings.push_back(*std::move(warning));
 }
@@ -531,7 +532,7 @@ void read_surfaces(JsonObject& root, Scene& scene) {
     auto* const newton = std::get_if<NewtonOptions>(&options.solver);
     if (newton != nullptr && !is_exact) newton->collision = CollisionMode::Particles;
     read_former_collision(root, newton, scene);
-    if (const auto mode = root.read_word("collision", {"particles", "surfaces", "surfaces_and_self"})) {
+    if (const auto mode = root.read_word("collision", {kModes.begin(), kModes.end()})) {
         if (newton != nullptr)
             newton->collision = static_cast<CollisionMode>(*mode);
         else if (*mode != 0)

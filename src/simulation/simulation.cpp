@@ -7,9 +7,23 @@
 #include <xxhash.h>
 
 #include <utility>
+#include <variant>
 #include <vector>
 
 namespace echinus {
+
+SolverChoice::SolverChoice(const SimulationOptions& options) : kind(options.kind()) {
+    if (const auto* held = std::get_if<NewtonOptions>(&options.solver)) newton = *held;
+    if (const auto* held = std::get_if<JakobsenOptions>(&options.solver)) {
+        jakobsen = *held;
+        newton.collision = CollisionMode::Particles;
+    }
+}
+
+std::variant<NewtonOptions, JakobsenOptions> SolverChoice::chosen() const {
+    if (kind == SolverKind::Newton) return newton;
+    return jakobsen;
+}
 
 Simulation::Simulation(Deformable deformable, std::vector<Collider> colliders,
                        const SimulationOptions& options)
@@ -58,24 +72,24 @@ const SimulationProfile& Simulation::profile() const {
 
 void Simulation::set_collider_velocity(std::size_t collider_index, const Vec3d& linear,
                                        const Vec3d& angular) {
-    if (!meets(collider_index < colliders().size(), "there is no collider of this index")) return;
+    if (!is_met(collider_index < colliders().size(), "there is no collider of this index")) return;
     solver_->motions.keep_velocity(collider_index);
     solver_->colliders[collider_index].linear_velocity = linear;
     solver_->colliders[collider_index].angular_velocity = angular;
 }
 
 void Simulation::set_collider_pose(std::size_t collider_index, const RigidTransform& pose) {
-    if (!meets(collider_index < colliders().size(), "there is no collider of this index")) return;
+    if (!is_met(collider_index < colliders().size(), "there is no collider of this index")) return;
     solver_->motions.lead_to(collider_index, solver_->name_of_collider(collider_index), pose);
 }
 
 void Simulation::set_collider_keyframes(std::size_t collider_index, std::vector<PoseKey> keys) {
-    if (!meets(collider_index < colliders().size(), "there is no collider of this index")) return;
+    if (!is_met(collider_index < colliders().size(), "there is no collider of this index")) return;
     solver_->motions.follow(collider_index, solver_->name_of_collider(collider_index), std::move(keys));
 }
 
 void Simulation::set_collider_free(std::size_t collider_index, double mass) {
-    if (!meets(collider_index < colliders().size(), "there is no collider of this index")) return;
+    if (!is_met(collider_index < colliders().size(), "there is no collider of this index")) return;
     solver_->set_free(collider_index, mass);
 }
 
@@ -84,17 +98,17 @@ void Simulation::teleport(const Teleport& teleport) {
 }
 
 void Simulation::set_collider_vertices(std::size_t collider_index, std::span<const Vec3f> vertices_local) {
-    if (!meets(collider_index < colliders().size(), "there is no collider of this index")) return;
+    if (!is_met(collider_index < colliders().size(), "there is no collider of this index")) return;
     solver_->lead_vertices(collider_index, vertices_local);
 }
 
 void Simulation::set_collider_cache(std::size_t collider_index, VertexCache cache) {
-    if (!meets(collider_index < colliders().size(), "there is no collider of this index")) return;
+    if (!is_met(collider_index < colliders().size(), "there is no collider of this index")) return;
     solver_->follow_cache(collider_index, std::move(cache));
 }
 
 Load Simulation::load_on(std::size_t collider_index) const {
-    if (!meets(collider_index < colliders().size(), "there is no collider of this index")) return {};
+    if (!is_met(collider_index < colliders().size(), "there is no collider of this index")) return {};
     return solver_->load_on(collider_index);
 }
 
@@ -107,7 +121,7 @@ std::span<const ContactPoint> Simulation::contact_points() const {
 }
 
 void Simulation::set_particle_velocity(std::size_t particle, const Vec3d& velocity) {
-    if (!meets(particle < deformable().particle_count(), "there is no particle of this index")) return;
+    if (!is_met(particle < deformable().particle_count(), "there is no particle of this index")) return;
     solver_->set_particle_velocity(particle, velocity);
 }
 

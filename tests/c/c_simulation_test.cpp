@@ -450,12 +450,12 @@ TEST(CSimulations, RefuseOptionsOfTheSolverThatIsNotChosen) {
     echinus_simulation_options_init(&options, sizeof options);
     CSimulation simulation;
     options.drag = 0.1;
-    expect_refused(created(options, simulation), ECHINUS_INVALID_OPTIONS, "only jakobsen has");
+    expect_refused(created(options, simulation), ECHINUS_INVALID_OPTIONS, "only the jakobsen solver has it");
     options.solver = ECHINUS_SOLVER_JAKOBSEN;
     options.time_step = 1.0 / 240;
     expect_ok(created(options, simulation));
     options.air_drag = 0;
-    expect_refused(created(options, simulation), ECHINUS_INVALID_OPTIONS, "only newton has");
+    expect_refused(created(options, simulation), ECHINUS_INVALID_OPTIONS, "only the newton solver has it");
 }
 
 TEST(CSimulations, HaveCollisionOfParticlesWithJakobsenWhetherThatIsSaidOrNot) {
@@ -474,5 +474,5 @@ TEST(CSimulations, HaveCollisionOfParticlesWithJakobsenWhetherThatIsSaidOrNot) {
     options.collision = ECHINUS_COLLISION_SURFACES;
     CSimulation simulation;
     expect_refused(echinus_simulation_create(sheet.get(), nullptr, 0, &options, out(simulation)),
-                   ECHINUS_INVALID_OPTIONS, "only newton has");
+                   ECHINUS_INVALID_OPTIONS, "only the newton solver has it");
 }

@@ -200,7 +200,7 @@ def test_jakobsen_has_collision_of_particles_whether_that_is_said_or_not():
     for given in ({}, {"collision": "particles"}):
         simulation = ech.Simulation(sheet, solver="jakobsen", time_step=1 / 240, **given)
         assert simulation.options.collision == "particles"
-    with pytest.raises(ech.Error, match="only newton has"):
+    with pytest.raises(ech.Error, match="only the newton solver has it"):
         ech.Simulation(sheet, solver="jakobsen", time_step=1 / 240, collision="surfaces")
 
 

@@ -4,7 +4,6 @@
 
 #include "border.hpp"
 
-#include <echinus/error.hpp>
 #include <echinus/particle_collision.hpp>
 #include <echinus/soft_body.hpp>
 #include <echinus/surface_collision.hpp>
@@ -190,57 +189,41 @@ template <typename C, typename Options, typename Use>
 requires std::same_as<std::remove_const_t<C>, echinus_simulation_options> &&
     std::same_as<std::remove_const_t<Options>, SimulationOptions>
 void for_each_option(C& c, Options& o, const Use& use) {
-    SolverKind kind = o.kind();
-    NewtonOptions newton;
-    if (const auto* held = std::get_if<NewtonOptions>(&o.solver)) newton = *held;
-    JakobsenOptions jakobsen;
-    if (const auto* held = std::get_if<JakobsenOptions>(&o.solver)) jakobsen = *held;
-    if (kind == SolverKind::Jakobsen) newton.collision = CollisionMode::Particles;
+    SolverChoice choice(o);
     use("time_step", c.time_step, o.time_step, Limits{1e-9, 1e9});
-    use("solver", c.solver, kind, SolverKind::Jakobsen);
-    use("iteration_count", c.iteration_count, jakobsen.iteration_count, Limits{1, 1e6});
-    use("newton_step_count", c.newton_step_count, newton.step_count, Limits{1, 1000});
+    use("solver", c.solver, choice.kind, SolverKind::Jakobsen);
+    use("iteration_count", c.iteration_count, choice.jakobsen.iteration_count, Limits{1, 1e6});
+    use("newton_step_count", c.newton_step_count, choice.newton.step_count, Limits{1, 1000});
     use("rest_frame_count", c.rest_frame_count, o.rest.frame_count, Limits{1, 1e9});
     use("rest_distance", c.rest_distance, o.rest.distance, Limits{0, 1e9});
     use("rest_speed", c.rest_speed, o.rest.speed, Limits{0, std::numeric_limits<double>::infinity()});
     use("gravity", c.gravity, o.gravity, Limits{-1e9, 1e9});
-    use("drag", c.drag, jakobsen.drag, Limits{0, 1});
-    use("stiffness", c.stiffness, jakobsen.stiffness, Limits{0, 1.99});
+    use("drag", c.drag, choice.jakobsen.drag, Limits{0, 1});
+    use("stiffness", c.stiffness, choice.jakobsen.stiffness, Limits{0, 1.99});
     use("thickness", c.thickness, o.thickness, Limits{0, 1e9});
-    use("self_thickness", c.self_thickness, newton.self_thickness, Limits{0, 1e9});
+    use("self_thickness", c.self_thickness, choice.newton.self_thickness, Limits{0, 1e9});
     use("friction", c.friction, o.friction, Limits{0, 1e9});
     use("bound", c.bound, o.bound, Limits{0, 1e30});
-    use("keep_free", c.keep_free, jakobsen.keep_free);
+    use("keep_free", c.keep_free, choice.jakobsen.keep_free);
     use("allow_open_colliders", c.allow_open_colliders, o.allow_open_colliders);
-    use("collision", c.collision, newton.collision, CollisionMode::SurfacesAndSelf);
-    use("untangle", c.untangle, newton.untangle);
+    use("collision", c.collision, choice.newton.collision, CollisionMode::SurfacesAndSelf);
+    use("untangle", c.untangle, choice.newton.untangle);
     use.reserved(c.reserved);
     use("thread_count", c.thread_count, o.thread_count);
-    use("density", c.density, newton.material.density, Limits{1e-6, 1e6});
-    use("stretch_stiffness", c.stretch_stiffness, newton.material.stretch_stiffness, Limits{1e-6, 1e9});
-    use("shear_stiffness", c.shear_stiffness, newton.material.shear_stiffness, Limits{0, 1e9});
-    use("bending_stiffness", c.bending_stiffness, newton.material.bending_stiffness, Limits{0, 1e6});
-    use("damping", c.damping, newton.material.damping, Limits{0, 1e6});
-    use("newton_tolerance", c.newton_tolerance, newton.tolerance, Limits{0, 1});
-    use("air_drag", c.air_drag, newton.air_drag, Limits{0, 1e6});
+    use("density", c.density, choice.newton.material.density, Limits{1e-6, 1e6});
+    use("stretch_stiffness", c.stretch_stiffness, choice.newton.material.stretch_stiffness,
+        Limits{1e-6, 1e9});
+    use("shear_stiffness", c.shear_stiffness, choice.newton.material.shear_stiffness, Limits{0, 1e9});
+    use("bending_stiffness", c.bending_stiffness, choice.newton.material.bending_stiffness, Limits{0, 1e6});
+    use("damping", c.damping, choice.newton.material.damping, Limits{0, 1e6});
+    use("newton_tolerance", c.newton_tolerance, choice.newton.tolerance, Limits{0, 1});
+    use("air_drag", c.air_drag, choice.newton.air_drag, Limits{0, 1e6});
     use("wind", c.wind, o.wind, Limits{-1e9, 1e9});
     use("wind_rate", c.wind_rate, o.wind_rate, Limits{0, 1e9});
-    use("pressure", c.pressure, newton.pressure, Limits{0, 1e9});
+    use("pressure", c.pressure, choice.newton.pressure, Limits{0, 1e9});
     if constexpr (!std::is_const_v<Options>) {
-        if (kind == SolverKind::Newton)
-            o.solver = newton;
-        else
-            o.solver = jakobsen;
-        if (kind == SolverKind::Newton && jakobsen != JakobsenOptions{})
-            throw Error(ErrorCode::InvalidOptions,
-                        "the solver is newton, and an option that only jakobsen has is set: one of "
-                        "iteration_count, drag, stiffness, keep_free");
-        if (newton.collision == CollisionMode::Particles) newton.collision = NewtonOptions{}.collision;
-        if (kind == SolverKind::Jakobsen && newton != NewtonOptions{})
-            throw Error(ErrorCode::InvalidOptions,
-                        "the solver is jakobsen, and an option that only newton has is set: one of "
-                        "newton_step_count, self_thickness, collision, untangle, density, stretch_stiffness, "
-                        "shear_stiffness, bending_stiffness, damping, newton_tolerance, air_drag, pressure");
+        choice.require_defaults_of_other();
+        o.solver = choice.chosen();
     }
 }
 echinus_simulation_options as_c(const SimulationOptions& options);

@@ -547,10 +547,6 @@ class Simulation:
         return f"<echinus.Simulation: {len(self.positions)} particles, frame {self.frame}>"
 
 
-def _chosen(given: bool | None, otherwise: bool) -> bool:
-    return otherwise if given is None else given
-
-
 def _one_for_each(model: _Model | Sequence[_Model], collider_count: int) -> list[_Model]:
     """The files or meshes that are given in place of the model of each collider."""
     if model is None:

@@ -2,7 +2,6 @@
 
 #pragma once
 
-#include <echinus/error.hpp>
 #include <echinus/particle_collision.hpp>
 #include <echinus/soft_body.hpp>
 #include <echinus/surface_collision.hpp>
@@ -103,56 +102,39 @@ void for_each_option(Options& o, const Use& use) {
 template <typename Options, typename Use>
 requires std::same_as<std::remove_const_t<Options>, SimulationOptions>
 void for_each_option(Options& o, const Use& use) {
-    SolverKind kind = o.kind();
-    NewtonOptions newton;
-    if (const auto* held = std::get_if<NewtonOptions>(&o.solver)) newton = *held;
-    JakobsenOptions jakobsen;
-    if (const auto* held = std::get_if<JakobsenOptions>(&o.solver)) jakobsen = *held;
-    if (kind == SolverKind::Jakobsen) newton.collision = CollisionMode::Particles;
+    SolverChoice choice(o);
     use("time_step", o.time_step);
-    use("solver", kind, {"newton", "jakobsen"});
-    use("iteration_count", jakobsen.iteration_count);
-    use("newton_step_count", newton.step_count);
+    use("solver", choice.kind, {"newton", "jakobsen"});
+    use("iteration_count", choice.jakobsen.iteration_count);
+    use("newton_step_count", choice.newton.step_count);
     use("rest_frame_count", o.rest.frame_count);
     use("rest_distance", o.rest.distance);
     use("rest_speed", o.rest.speed);
     use("gravity", o.gravity);
-    use("drag", jakobsen.drag);
-    use("stiffness", jakobsen.stiffness);
+    use("drag", choice.jakobsen.drag);
+    use("stiffness", choice.jakobsen.stiffness);
     use("thickness", o.thickness);
-    use("self_thickness", newton.self_thickness);
+    use("self_thickness", choice.newton.self_thickness);
     use("friction", o.friction);
     use("bound", o.bound);
-    use("keep_free", jakobsen.keep_free);
+    use("keep_free", choice.jakobsen.keep_free);
     use("allow_open_colliders", o.allow_open_colliders);
-    use("collision", newton.collision, {"particles", "surfaces", "surfaces_and_self"});
-    use("untangle", newton.untangle);
+    use("collision", choice.newton.collision, {"particles", "surfaces", "surfaces_and_self"});
+    use("untangle", choice.newton.untangle);
     use("threads", o.thread_count);
-    use("density", newton.material.density);
-    use("stretch_stiffness", newton.material.stretch_stiffness);
-    use("shear_stiffness", newton.material.shear_stiffness);
-    use("bending_stiffness", newton.material.bending_stiffness);
-    use("damping", newton.material.damping);
-    use("newton_tolerance", newton.tolerance);
-    use("air_drag", newton.air_drag);
+    use("density", choice.newton.material.density);
+    use("stretch_stiffness", choice.newton.material.stretch_stiffness);
+    use("shear_stiffness", choice.newton.material.shear_stiffness);
+    use("bending_stiffness", choice.newton.material.bending_stiffness);
+    use("damping", choice.newton.material.damping);
+    use("newton_tolerance", choice.newton.tolerance);
+    use("air_drag", choice.newton.air_drag);
     use("wind", o.wind);
     use("wind_rate", o.wind_rate);
-    use("pressure", newton.pressure);
+    use("pressure", choice.newton.pressure);
     if constexpr (!std::is_const_v<Options>) {
-        if (kind == SolverKind::Newton)
-            o.solver = newton;
-        else
-            o.solver = jakobsen;
-        if (kind == SolverKind::Newton && jakobsen != JakobsenOptions{})
-            throw Error(ErrorCode::InvalidOptions,
-                        "the solver is newton, and an option that only jakobsen has is set: one of "
-                        "iteration_count, drag, stiffness, keep_free");
-        if (newton.collision == CollisionMode::Particles) newton.collision = NewtonOptions{}.collision;
-        if (kind == SolverKind::Jakobsen && newton != NewtonOptions{})
-            throw Error(ErrorCode::InvalidOptions,
-                        "the solver is jakobsen, and an option that only newton has is set: one of "
-                        "newton_step_count, self_thickness, collision, untangle, density, stretch_stiffness, "
-                        "shear_stiffness, bending_stiffness, damping, newton_tolerance, air_drag, pressure");
+        choice.require_defaults_of_other();
+        o.solver = choice.chosen();
     }
 }
 

@@ -55,8 +55,8 @@ Contact stretched_contact(const ExactMapView& map, const Vec3f& point_local, flo
 
 void contains_batch(const ExactMapView& map, StridedSpan<const Vec3f> points_local,
                     std::span<std::uint8_t> inside, unsigned thread_count) noexcept {
-    if (!meets(points_local.size() == inside.size(),
-               "contains_batch: there are not as many inside as points"))
+    if (!is_met(points_local.size() == inside.size(),
+                "contains_batch: there are not as many inside as points"))
         return;
     for_each_piece(inside.size(), thread_count, [&](std::size_t begin, std::size_t end) {
         const std::span<Side> sides = inside.subspan(begin, end - begin);
@@ -68,12 +68,10 @@ void contains_batch(const ExactMapView& map, StridedSpan<const Vec3f> points_loc
 
 void classify_batch(const ExactMapView& map, StridedSpan<const Vec3f> points_local,
                     std::span<Containment> answers, unsigned thread_count) noexcept {
-    if (!meets(points_local.size() == answers.size(),
-               "classify_batch: there are not as many answers as points"))
+    if (!is_met(points_local.size() == answers.size(),
+                "classify_batch: there are not as many answers as points"))
         return;
-    for_each_piece(answers.size(), thread_count, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i) answers[i] = classify(map, points_local[i]);
-    });
+    answer_each(answers, thread_count, [&](std::size_t i) { return classify(map, points_local[i]); });
 }
 
 void contacts_batch(const ExactMapView& map, StridedSpan<const Vec3f> points_local, float margin,
@@ -84,8 +82,8 @@ void contacts_batch(const ExactMapView& map, StridedSpan<const Vec3f> points_loc
 void stretched_contacts_batch(const ExactMapView& map, const StridedSpan<const Vec3f>& points_local,
                               float margin, std::span<Contact> contacts, const Vec3d& stretch,
                               unsigned thread_count) noexcept {
-    if (!meets(points_local.size() == contacts.size(),
-               "contacts_batch: there are not as many contacts as points"))
+    if (!is_met(points_local.size() == contacts.size(),
+                "contacts_batch: there are not as many contacts as points"))
         return;
     const ContactSearch search(map, stretch, margin);
     for_each_piece(contacts.size(), thread_count, [&](std::size_t begin, std::size_t end) {
@@ -117,13 +115,11 @@ float winding_number(const ExactMapView& map, Vec3f point_local, float tolerance
 
 void winding_number_batch(const ExactMapView& map, StridedSpan<const Vec3f> points_local,
                           std::span<float> windings, float tolerance, unsigned thread_count) noexcept {
-    if (!meets(points_local.size() == windings.size(),
-               "winding_number_batch: there are not as many windings as points"))
+    if (!is_met(points_local.size() == windings.size(),
+                "winding_number_batch: there are not as many windings as points"))
         return;
-    for_each_piece(windings.size(), thread_count, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i)
-            windings[i] = winding_number(map, points_local[i], tolerance);
-    });
+    answer_each(windings, thread_count,
+                [&](std::size_t i) { return winding_number(map, points_local[i], tolerance); });
 }
 
 float signed_distance(const ExactMapView& map, Vec3f point_local, Vec3f* gradient) noexcept {
@@ -136,11 +132,11 @@ float signed_distance(const ExactMapView& map, Vec3f point_local, Vec3f* gradien
 void signed_distance_batch(const ExactMapView& map, StridedSpan<const Vec3f> points_local,
                            std::span<float> distances, std::span<Vec3f> gradients,
                            unsigned thread_count) noexcept {
-    if (!meets(points_local.size() == distances.size(),
-               "signed_distance_batch: there are not as many distances as points"))
+    if (!is_met(points_local.size() == distances.size(),
+                "signed_distance_batch: there are not as many distances as points"))
         return;
-    if (!meets(gradients.empty() || gradients.size() == distances.size(),
-               "signed_distance_batch: there are not as many gradients as points"))
+    if (!is_met(gradients.empty() || gradients.size() == distances.size(),
+                "signed_distance_batch: there are not as many gradients as points"))
         return;
     const ContactSearch search = search_everywhere(map);
     for_each_piece(distances.size(), thread_count, [&](std::size_t begin, std::size_t end) {

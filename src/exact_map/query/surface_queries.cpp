@@ -363,35 +363,30 @@ TriangleSweepHit sweep(const ExactMapView& map, const TrianglePoints& from_local
 
 void intersects_batch(const ExactMapView& map, StridedSpan<const TrianglePoints> triangles_local,
                       std::span<std::uint8_t> intersecting, unsigned thread_count) noexcept {
-    if (!meets(triangles_local.size() == intersecting.size(),
-               "intersects_batch: there are not as many answers as triangles"))
+    if (!is_met(triangles_local.size() == intersecting.size(),
+                "intersects_batch: there are not as many answers as triangles"))
         return;
-    for_each_piece(intersecting.size(), thread_count, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i)
-            intersecting[i] = intersects(map, triangles_local[i]) ? 1 : 0;
+    answer_each(intersecting, thread_count, [&](std::size_t i) {
+        return intersects(map, triangles_local[i]) ? std::uint8_t{1} : std::uint8_t{0};
     });
 }
 
 void clearance_batch(const ExactMapView& map, StridedSpan<const TrianglePoints> triangles_local,
                      float farthest, std::span<Clearance> clearances, unsigned thread_count) noexcept {
-    if (!meets(triangles_local.size() == clearances.size(),
-               "clearance_batch: there are not as many clearances as triangles"))
+    if (!is_met(triangles_local.size() == clearances.size(),
+                "clearance_batch: there are not as many clearances as triangles"))
         return;
-    for_each_piece(clearances.size(), thread_count, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i)
-            clearances[i] = clearance(map, triangles_local[i], farthest);
-    });
+    answer_each(clearances, thread_count,
+                [&](std::size_t i) { return clearance(map, triangles_local[i], farthest); });
 }
 
 void sweep_batch(const ExactMapView& map, StridedSpan<const TrianglePoints> from_local,
                  StridedSpan<const TrianglePoints> to_local, std::span<TriangleSweepHit> hits,
                  unsigned thread_count) noexcept {
-    if (!meets(from_local.size() == hits.size() && to_local.size() == hits.size(),
-               "sweep_batch: starts, ends and hits differ in number"))
+    if (!is_met(from_local.size() == hits.size() && to_local.size() == hits.size(),
+                "sweep_batch: starts, ends and hits differ in number"))
         return;
-    for_each_piece(hits.size(), thread_count, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i) hits[i] = sweep(map, from_local[i], to_local[i]);
-    });
+    answer_each(hits, thread_count, [&](std::size_t i) { return sweep(map, from_local[i], to_local[i]); });
 }
 
 void faces_within_batch(const ExactMapView& map, StridedSpan<const Vec3f> vertices_local,

@@ -206,12 +206,10 @@ SweepHit sweep(const ExactMapView& map, Vec3f from_local, Vec3f to_local) noexce
 void sweep_batch(const ExactMapView& map, StridedSpan<const Vec3f> from_local,
                  StridedSpan<const Vec3f> to_local, std::span<SweepHit> hits,
                  unsigned thread_count) noexcept {
-    if (!meets(from_local.size() == hits.size() && to_local.size() == hits.size(),
-               "sweep_batch: starts, ends and hits differ in number"))
+    if (!is_met(from_local.size() == hits.size() && to_local.size() == hits.size(),
+                "sweep_batch: starts, ends and hits differ in number"))
         return;
-    for_each_piece(hits.size(), thread_count, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i) hits[i] = sweep(map, from_local[i], to_local[i]);
-    });
+    answer_each(hits, thread_count, [&](std::size_t i) { return sweep(map, from_local[i], to_local[i]); });
 }
 
 } // namespace echinus

@@ -55,4 +55,34 @@ void require_ranges(const SurfaceCollisionOptions& o) {
     require_within("collision option self_thickness", o.self_thickness, 0, 1e9);
 }
 
+void SolverChoice::require_defaults_of_other() const {
+    if (kind == SolverKind::Newton) {
+        const JakobsenOptions defaults;
+        require_default("iteration_count", jakobsen.iteration_count == defaults.iteration_count, "jakobsen");
+        require_default("drag", jakobsen.drag == defaults.drag, "jakobsen");
+        require_default("stiffness", jakobsen.stiffness == defaults.stiffness, "jakobsen");
+        require_default("keep_free", jakobsen.keep_free == defaults.keep_free, "jakobsen");
+    }
+    if (kind == SolverKind::Jakobsen) {
+        const NewtonOptions defaults;
+        require_default("newton_step_count", newton.step_count == defaults.step_count, "newton");
+        require_default("self_thickness", newton.self_thickness == defaults.self_thickness, "newton");
+        require_default(
+            "collision",
+            newton.collision == defaults.collision || newton.collision == CollisionMode::Particles, "newton");
+        require_default("untangle", newton.untangle == defaults.untangle, "newton");
+        require_default("density", newton.material.density == defaults.material.density, "newton");
+        require_default("stretch_stiffness",
+                        newton.material.stretch_stiffness == defaults.material.stretch_stiffness, "newton");
+        require_default("shear_stiffness",
+                        newton.material.shear_stiffness == defaults.material.shear_stiffness, "newton");
+        require_default("bending_stiffness",
+                        newton.material.bending_stiffness == defaults.material.bending_stiffness, "newton");
+        require_default("damping", newton.material.damping == defaults.material.damping, "newton");
+        require_default("newton_tolerance", newton.tolerance == defaults.tolerance, "newton");
+        require_default("air_drag", newton.air_drag == defaults.air_drag, "newton");
+        require_default("pressure", newton.pressure == defaults.pressure, "newton");
+    }
+}
+
 } // namespace echinus

@@ -52,6 +52,12 @@ void require_within(const char* name, std::span<const double> values, double lea
     for (const double value : values) require_within(name, value, least, most);
 }
 
+void require_default(const char* name, bool is_default, const char* solver) {
+    if (!is_default)
+        fail(std::string("simulation option ") + name + " is set, and only the " + solver +
+             " solver has it; leave it out, or choose that solver");
+}
+
 void require_option(bool condition, const std::string& sentence) {
     if (!condition) fail(sentence);
 }

@@ -29,6 +29,9 @@ void require_within(const char* name, std::span<const double> values, double lea
 /// Units; that of simulations in bindings/options.toml.
 inline constexpr double kMostThickness = 1e9;
 /// Of each number that has a range in bindings/options.toml.
+/// @param name  of an option that only this solver has, and not the one that is chosen
+/// @throws Error InvalidOptions unless it has its default
+void require_default(const char* name, bool is_default, const char* solver);
 void require_ranges(const MeshClothOptions& options);
 void require_ranges(const SoftBodyOptions& options);
 void require_ranges(const SimulationOptions& options);
