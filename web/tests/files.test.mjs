@@ -119,6 +119,15 @@ test('a closed mesh that is inside out is reported unless it is mended, and an o
     await browser.close(page);
 });
 
+/** Holds the cloth where it begins: both clicks reach the worker one after the other, before it computes another frame. */
+async function holdAbove(page) {
+    await page.evaluate(() => {
+        document.getElementById('restart').click();
+        document.getElementById('pause').click();
+    });
+    await page.waitForFunction(() => document.body.dataset.paused === 'true' && Number(document.body.dataset.frame) < 8);
+}
+
 test('an open mesh is reported with the number of its border edges', async () => {
     const page = await browser.open('#model=torus&particles=400&self=false', SMALL);
     await untilFrame(page, 1);
@@ -127,6 +136,7 @@ test('an open mesh is reported with the number of its border edges', async () =>
     assert.match(await page.locator('#report').textContent(), /Open/);
     await page.locator('input[name=surfaces]').check(); // faces of the cloth that intersect would be red, too
     await untilFrame(page, 1);
+    await holdAbove(page);
     for (let press = 0; press < 8; ++press) await page.keyboard.press('ArrowDown'); // from beside, where the cloth hides less
     await page.waitForTimeout(500);
     const red = await pixelsOf(page, FAULT_RED, LINE_RED);
@@ -157,14 +167,8 @@ test('a line of faults shows only faintly through the cloth that hides it', asyn
         for (let press = 0; press < count; ++press) await page.keyboard.press(key);
         await page.waitForTimeout(500);
     };
-    // The cloth is held above it, right after it has started again: as often as it takes to catch it there.
     await untilFrame(page, 10);
-    await page.waitForFunction(() => {
-        const isAbove = Number(document.body.dataset.frame) < 8;
-        document.getElementById(isAbove ? 'pause' : 'restart').click();
-        return isAbove;
-    });
-    await page.waitForFunction(() => document.body.dataset.paused === 'true');
+    await holdAbove(page);
     await turn('ArrowDown', 5);
     const beside = await red();
     await picture(page, 'faults_beside');
