@@ -23,31 +23,30 @@ def records(folder, task):
     return list(csv.DictReader(line for line in lines if not line.startswith("#")))
 
 
-def plot(curves, x_label, y_label, path):
-    """curves: name -> (points, is ours)"""
-    figure, axes = pyplot.subplots(figsize=(7, 4.2), layout="constrained")
-    for number, (name, (points, ours)) in enumerate(curves.items()):
-        style = "s--" if not ours else "o-" if number < COLOURS else "^-."
-        axes.plot(*zip(*sorted(points)), style, label=name, markersize=4, linewidth=1.2)
-    axes.set(xscale="log", yscale="log", xlabel=x_label, ylabel=y_label)
-    axes.grid(True, which="major", alpha=0.3)
-    axes.legend(loc="center left", bbox_to_anchor=(1, 0.5), frameon=False)
-    figure.savefig(path, metadata={"Date": None})
-    pyplot.close(figure)
-
-
-def plot_sets(rows, x, x_label, path):
-    """One diagram for each of U, S and C, in one picture with one scale of times."""
-    figure, all_axes = pyplot.subplots(1, 3, figsize=(9, 3.4), layout="constrained", sharey=True)
-    for name, axes in zip("USC", all_axes):
-        for system, (points, ours) in curves_of([r for r in rows if r["set"] == name], x, nanoseconds).items():
-            axes.plot(*zip(*sorted(points)), "o-" if ours else "s--", label=system, markersize=4, linewidth=1.2)
-        axes.set(xscale="log", yscale="log", xlabel=x_label, title=name)
+def plot(panels, path, columns=1, sharey=False, size=(7, 4.2)):
+    """Diagrams in rows of so many, with one legend: a system looks alike in all of them.
+    panels: of each the curves (name -> points, is ours), the labels of its axes and its title"""
+    rows = len(panels) // columns
+    figure, all_axes = pyplot.subplots(rows, columns, figsize=size, layout="constrained", sharey=sharey, squeeze=False)
+    names = list(dict.fromkeys(name for curves, *_ in panels for name in curves))
+    drawn = {}
+    for axes, (curves, x_label, y_label, title) in zip(all_axes.flat, panels):
+        for name, (points, ours) in curves.items():
+            number = names.index(name)
+            style = "s--" if not ours else "o-" if number < COLOURS else "^-."
+            drawn[name], = axes.plot(*zip(*sorted(points)), style, color=f"C{number % COLOURS}", markersize=4, linewidth=1.2)
+        axes.set(xscale="log", yscale="log", xlabel=x_label, ylabel=y_label, title=title)
         axes.grid(True, which="major", alpha=0.3)
-    all_axes[0].set_ylabel("ns a particle")
-    all_axes[-1].legend(loc="center left", bbox_to_anchor=(1, 0.5), frameon=False)
+    middle = all_axes[(rows - 1) // 2, -1]
+    middle.legend([drawn[name] for name in names], names, loc="center left", bbox_to_anchor=(1, 0.5 if rows % 2 else 0), frameon=False)
     figure.savefig(path, metadata={"Date": None})
     pyplot.close(figure)
+
+
+def sets(rows, x, x_label, title=""):
+    """A diagram for each of U, S and C."""
+    return [(curves_of([r for r in rows if r["set"] == name], x, nanoseconds), x_label, "ns a particle" if name == "U" else "",
+             f"{title}{name}") for name in "USC"]
 
 
 def call_size(r):
@@ -82,40 +81,40 @@ def draw(task, folder, images):
     ns, wrong, size = "ns a particle", "on the wrong side, %", "MB"
     if task in ("contains", "contacts"):
         first = [r for r in rows if r["mesh"] == rows[0]["mesh"] and r["set"] == "S" and r["call"] == rows[0]["call"]]
-        plot(curves_of(first, wrong_percent, nanoseconds), wrong, ns, images / f"{task}_time_error.svg")
+        plot([(curves_of(first, wrong_percent, nanoseconds), wrong, ns, "")], images / f"{task}_time_error.svg")
     elif task == "bytes":
-        for question in ("contains", "contacts"):
+        panels = []
+        for question, error, error_label in (("contains", wrong_percent, wrong), ("contacts", depth_percent, "mean error of the depth, % of R")):
             some = [r for r in rows if r["task"] == question]
-            plot(curves_of(some, megabytes, nanoseconds), size, ns, images / f"{question}_time_bytes.svg")
-        sides = [r for r in rows if r["task"] == "contains"]
-        plot(curves_of(sides, megabytes, wrong_percent), size, wrong, images / "contains_error_bytes.svg")
-        depths = [r for r in rows if r["task"] == "contacts"]
-        plot(curves_of(depths, megabytes, depth_percent), size, "mean error of the depth, % of R",
-             images / "contacts_error_bytes.svg")
+            panels += [(curves_of(some, megabytes, nanoseconds), size, ns, question),
+                       (curves_of(some, megabytes, error), size, error_label, question)]
+        plot(panels, images / "bytes.svg", columns=2, size=(9, 7))
     elif task == "build":
         tori = [r for r in rows if r["mesh"].startswith("torus")]
-        plot(curves_of(tori, lambda r: float(r["faces"]), lambda r: float(r["ms"])), "faces", "ms",
-             images / "build_faces.svg")
+        curves = curves_of(tori, lambda r: float(r["faces"]), lambda r: float(r["ms"]))
+        plot([(curves, "faces", "ms", "")], images / "build_faces.svg")
     elif task == "calls":
-        for question in ("contains", "contacts", "distances"):
-            some = [r for r in rows if r["kind"] == "calls" and r["mesh"] == rows[0]["mesh"] and r["task"] == question]
-            plot_sets(some, call_size, "particles in a call", images / f"calls_{question}.svg")
-        for call, name in (("1", "single"), ("1000", "1000")):
-            some = [r for r in rows if r["kind"] == "faces" and r["task"] == "contacts" and r["call"] == call]
-            plot_sets(some, lambda r: float(r["faces"]), "faces", images / f"calls_faces_{name}.svg")
+        calls = [r for r in rows if r["kind"] == "calls" and r["mesh"] == rows[0]["mesh"]]
+        of_tasks = {t: sets([r for r in calls if r["task"] == t], call_size, "particles in a call", f"{t}, ") for t in ("contains", "contacts", "distances")}
+        plot(of_tasks["contacts"], images / "calls_contacts.svg", columns=3, sharey=True, size=(9, 3.4))
+        plot(of_tasks["contains"] + of_tasks["distances"], images / "calls_others.svg", columns=3, sharey="row", size=(9, 6.4))
+        faces = [r for r in rows if r["kind"] == "faces" and r["task"] == "contacts"]
+        panels = [sets([r for r in faces if r["call"] == call], lambda r: float(r["faces"]), "faces", title)
+                  for call, title in (("1000", "calls of 1000, "), ("1", "single calls, "))]
+        plot(panels[0] + panels[1], images / "calls_faces.svg", columns=3, sharey="row", size=(9, 6.4))
     elif task == "surfaces":
         falls = [r for r in rows if r["scene"] == "horse the fall alone"]
         curves = {}
         for r in falls:
             curves.setdefault(r["method"], ([], True))[0].append((float(r["particles"]), float(r["frame_ms"])))
-        plot(curves, "particles", "ms a frame", images / "surfaces_particles.svg")
+        plot([(curves, "particles", "ms a frame", "")], images / "surfaces_particles.svg")
     elif task == "engines":
         curves = {}
         for r in rows:
             if (r["model"], r["setup"], r["status"]) == ("horse", "recommended", "done") and r["contact_ms"]:
                 point = (float(r["side"]) ** 2, float(r["contact_ms"]))
                 curves.setdefault(r["engine"], ([], "Echinus" in r["engine"]))[0].append(point)
-        plot(curves, "particles", "ms a frame", images / "engines_particles.svg")
+        plot([(curves, "particles", "ms a frame", "")], images / "engines_particles.svg")
 
 
 def main():
