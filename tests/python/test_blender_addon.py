@@ -15,11 +15,11 @@ from support import ROOT, torus
 sys.path.append(str(ROOT / "adapters" / "blender"))
 
 import echinus_blender  # noqa: E402
+from echinus_blender import Refusal  # noqa: E402
 from echinus_blender.faults import find_faults  # noqa: E402
 from echinus_blender.motions import BodySamples, motion_of, quaternion_of  # noqa: E402
 from echinus_blender.point_cache import write_point_cache  # noqa: E402
-from echinus_blender.refusal import Refusal  # noqa: E402
-from echinus_blender.run import Garment, Run, RunOptions  # noqa: E402
+from echinus_blender.run import Garment, Run, RunOptions, in_words_of_the_panel  # noqa: E402
 
 TRIANGLES = strategies.tuples(strategies.integers(1, 12), strategies.just(3)).flatmap(
     lambda shape: arrays.arrays(np.int64, shape, elements=strategies.integers(0, 5))
@@ -180,3 +180,55 @@ def test_a_cloth_that_begins_inside_is_refused_with_a_hint_and_parted_on_request
 def test_the_add_on_has_the_version_of_the_library():
     header = (ROOT / "include" / "echinus" / "version.h").read_text()
     assert ".".join(map(str, echinus_blender.bl_info["version"])) == re.search(r'STRING "(.*)"', header)[1]
+
+
+# The library's sentences about starts, in the words of the panel.
+
+
+def start_error(mesh, *bodies, **options):
+    colliders = [ech.Collider(ech.ExactMap(body), name="Ball") for body in bodies]
+    with pytest.raises(ech.Error) as raised:
+        ech.Simulation(ech.make_cloth_of_mesh(mesh, pins=options.pop("pins", [])), colliders, **options)
+    return in_words_of_the_panel(str(raised.value), "Skirt")
+
+
+BALL = ech.make_sphere(1, 32, 16)
+
+
+def sheet_at(size, height):
+    mesh = ech.make_cloth(column_count=9, row_count=9, width=size, height=size).mesh
+    return ech.Mesh(mesh.vertices + [0, 0, height], mesh.faces)
+
+
+def test_a_start_that_cuts_a_body():
+    sentence = start_error(sheet_at(3, 0.5), BALL)
+    assert sentence.startswith("Skirt begins intersecting Ball in ") and " pairs of faces: Check Collisions" in sentence
+    assert sentence.endswith('in the first frame shows where; tick "Part the Start" or move them apart')
+
+
+def test_a_start_inside_a_body():
+    sentence = start_error(sheet_at(0.2, 0), BALL)
+    assert sentence.startswith("81 vertices of Skirt begin inside Ball: Check Collisions in the first frame shows")
+
+
+def test_a_pinned_start_inside_a_body():
+    sentence = start_error(sheet_at(0.2, 0), BALL, pins=[0])
+    assert sentence == (
+        "81 vertices of Skirt begin inside Ball, 1 of them pinned there:"
+        " Check Collisions in the first frame shows where; move them apart"
+    )
+
+
+def test_a_start_that_cuts_itself():
+    flat = sheet_at(1, 5)
+    upright = flat.vertices[:, [0, 2, 1]] + [0, -5.03, 5.02]
+    crossing = ech.Mesh([*flat.vertices, *upright], [*flat.faces, *(flat.faces + len(upright))])
+    sentence = start_error(crossing, BALL)
+    assert sentence.startswith("Skirt begins intersecting itself in ")
+    assert sentence.endswith(
+        ': Check Mesh shows where; tick "Part the Start" or move them apart or switch "Self Collision" off'
+    )
+
+
+def test_other_sentences_stay():
+    assert in_words_of_the_panel("the thickness is too large", "Skirt") == "Skirt: the thickness is too large"

@@ -12,6 +12,10 @@ bl_info = {
 }
 
 
+class Refusal(Exception):
+    """What the add-on cannot do with what it was given: one sentence for the user."""
+
+
 # Imported late, so that the files that need no Blender can be imported without it.
 def register():
     from . import registration

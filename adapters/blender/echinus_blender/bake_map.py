@@ -3,9 +3,9 @@
 import bpy
 from bpy_extras.io_utils import ExportHelper
 
+from . import Refusal
 from .meshes import require_mesh, world_mesh
 from .motion_files import writable_place
-from .refusal import Refusal
 from .operators import Reporting, object_mode
 
 

@@ -1,7 +1,7 @@
 """The objects that a cloth collides with."""
 
+from . import Refusal
 from .meshes import hindrance, require_mesh
-from .refusal import Refusal
 
 #: Objects with a surface that are no meshes.
 SURFACES = {"CURVE", "FONT", "META", "SURFACE"}

@@ -4,9 +4,9 @@ import bmesh
 import bpy
 import numpy as np
 
+from . import Refusal
 from .faults import find_faults
 from .meshes import require_mesh, triangles_of, vertices_of
-from .refusal import Refusal
 from .operators import Reporting, object_mode
 
 KINDS = [

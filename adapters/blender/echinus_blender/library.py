@@ -5,7 +5,7 @@ import sys
 
 import bpy
 
-from .refusal import Refusal
+from . import Refusal
 
 HOW_TO_INSTALL = (
     "The Python module echinus is missing. On Debian install the package python3-echinus; elsewhere build it for"

@@ -4,7 +4,7 @@ import contextlib
 
 import numpy as np
 
-from .refusal import Refusal
+from . import Refusal
 
 def require_mesh(candidate, what):
     """

@@ -11,7 +11,7 @@ import pathlib
 
 import bpy
 
-from .refusal import Refusal
+from . import Refusal
 
 FOLDER = "echinus_cache"
 

@@ -5,8 +5,7 @@ import contextlib
 
 import bpy
 
-from . import library
-from .refusal import Refusal
+from . import Refusal, library
 
 
 class Reporting:

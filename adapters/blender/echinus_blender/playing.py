@@ -5,10 +5,10 @@ from dataclasses import dataclass
 import bpy
 import numpy as np
 
+from . import Refusal
 from .modifiers import MOTION, motion_modifier_of, place_motion
 from .motion_files import place_of_motion, remember
 from .point_cache import write_point_cache
-from .refusal import Refusal
 
 
 def to_object_frame(recorded, matrices):

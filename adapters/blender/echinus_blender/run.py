@@ -5,8 +5,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from . import Refusal
 from .motions import motion_of
-from .refusal import Refusal
 
 
 @dataclass(frozen=True)

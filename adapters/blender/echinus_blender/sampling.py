@@ -4,6 +4,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from . import Refusal
 from .bodies import bodies_of
 from .meshes import (
     evaluated_mesh,
@@ -18,7 +19,6 @@ from .meshes import (
 from .modifiers import modifiers_after_motion, motion_modifier_of, without
 from .motions import BodySamples
 from .playing import Destination, destination_of
-from .refusal import Refusal
 from .run import Garment
 
 

@@ -6,10 +6,10 @@ import time
 
 import bpy
 
+from . import Refusal
 from .bodies import said_of
 from .modifiers import unchecked_movers
 from .playing import play
-from .refusal import Refusal
 from .operators import Reporting, object_mode
 from .run import Run, RunOptions
 from .sampling import sample
