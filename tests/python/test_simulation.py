@@ -202,6 +202,8 @@ def test_jakobsen_has_collision_of_particles_whether_that_is_said_or_not():
         assert simulation.options.collision == "particles"
     with pytest.raises(ech.Error, match="only the newton solver has it"):
         ech.Simulation(sheet, solver="jakobsen", time_step=1 / 240, collision="surfaces")
+    with pytest.raises(ech.Error, match='collision is .surfaces.*leave it out, or set "solver": "newton" in the scene'):
+        ech.Simulation.from_scene({**SHEET, "solver": "jakobsen"}, collision="surfaces")
 
 
 def test_a_scene_takes_no_mode_of_collision_but_the_three():

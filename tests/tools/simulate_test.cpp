@@ -439,9 +439,22 @@ TEST_F(SimulateCommand, LetsSurfacesCollideWhereTheSceneOrAnOptionSaysSo) {
     };
     EXPECT_EQ(hash_with("surfaces.json", {"--collision", "surfaces_and_self"}), surfaces.at("state_hash"));
     EXPECT_EQ(simulate("surfaces.json", {"--collision", "particles"}).at("collision"), "particles");
-    expect_failure(2, "needs the newton solver",
+    expect_failure(2, "leave the option out, or set \"solver\": \"newton\" in the scene",
                    {"simulate", "particles.json", "-o", "run", "--collision", "surfaces"});
     expect_failure(2, "--collision", {"simulate", "particles.json", "-o", "run", "--collision", "maybe"});
+}
+
+TEST_F(SimulateCommand, NamesTheSuccessorsOfFormerOptions) {
+    const std::vector<std::string> command{"simulate", "scene.json", "-o", "run"};
+    const auto refuses = [&](std::vector<std::string> options, const std::string& sentence) {
+        options.insert(options.begin(), command.begin(), command.end());
+        expect_failure(2, sentence, options);
+    };
+    refuses({"--surfaces", "off"}, "--surfaces is now --collision surfaces, or particles for off");
+    refuses({"--surfaces=on"}, "--surfaces is now --collision surfaces, or particles for off");
+    refuses({"--self", "on"}, "--self is now --collision surfaces_and_self, or surfaces for off");
+    EXPECT_EQ(run({"simulate", "--help"}).output.find("--surfaces"), std::string::npos);
+    refuses({"--surface"}, "there is no option --surface");
 }
 
 TEST_F(SimulateCommand, TakesAnOpenModelWhereSurfacesCollide) {

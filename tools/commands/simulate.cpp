@@ -280,8 +280,9 @@ void choose_collision(const SimulateArguments& arguments, Scene& scene) {
     if (!arguments.collision) return;
     auto* const newton = std::get_if<NewtonOptions>(&scene.simulation.solver);
     if (newton == nullptr && arguments.collision != CollisionMode::Particles)
-        throw WrongUse("--collision", "needs the newton solver, and the scene has jakobsen, with which only "
-                                      "particles collide");
+        throw WrongUse("--collision",
+                       "with the scene's jakobsen solver only particles collide; leave the option "
+                       "out, or set \"solver\": \"newton\" in the scene");
     if (newton == nullptr) return;
     newton->collision = *arguments.collision;
     newton->untangle = newton->untangle && scene.simulation.surfaces_collide();
@@ -477,6 +478,8 @@ void add_options(Command command, SimulateArguments& arguments) {
         {"surfaces_and_self", CollisionMode::SurfacesAndSelf}};
     add_choice(command, "--collision", arguments.collision, modes,
                "The parts that collide, in place of the scene's collision");
+    command.add_former("--surfaces", "--collision surfaces, or particles for off");
+    command.add_former("--self", "--collision surfaces_and_self, or surfaces for off");
     command
         .add("--threads", &arguments.thread_count,
              "Threads that build the map, simulate and test for intersections; 0: all cores. By default all "

@@ -13,6 +13,9 @@
 
 namespace {
 
+/// CLI11 leaves options of this group out of the help.
+constexpr const char* kHidden = "";
+
 /// A number of bytes written with its unit, as "300KB" or "0.3MB"; nothing for any other text.
 std::optional<std::size_t> parse_byte_count(std::string_view text) {
     constexpr std::pair<std::string_view, double> kUnits[] = {{"B", 1},
@@ -100,7 +103,8 @@ std::vector<std::string> command_names(const CLI::App& app) {
 /// With those of its groups.
 std::vector<std::string> option_names(const CLI::App& app) {
     std::vector<std::string> names;
-    for (const CLI::Option* option : app.get_options())
+    for (const CLI::Option* option :
+         app.get_options([](const CLI::Option* o) { return o->get_group() != kHidden; }))
         for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
     for (const CLI::App* group : app.get_subcommands([](const CLI::App*) { return true; }))
         if (group->get_name().empty())
@@ -236,6 +240,13 @@ Option Command::add(const std::string& name, ArgumentTarget target, const std::s
 
 Option Command::add_flag(const std::string& name, bool& variable, const std::string& description) const {
     return Option(app_->add_flag(name, variable, description));
+}
+
+void Command::add_former(const std::string& name, const std::string& successor) const {
+    const std::function<void(std::int64_t)> refuse = [name, successor](std::int64_t) {
+        throw WrongUse(name + " is now " + successor);
+    };
+    app_->add_flag(name, refuse)->group(kHidden);
 }
 
 Option Command::add_byte_count(const std::string& name, std::size_t& variable,

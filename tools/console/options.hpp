@@ -76,6 +76,8 @@ class Command {
     /// A name without dashes is a positional argument.
     Option add(const std::string& name, ArgumentTarget target, const std::string& description = "") const;
     Option add_flag(const std::string& name, bool& variable, const std::string& description) const;
+    /// An option of earlier versions, which is wrong use: "NAME is now SUCCESSOR". The help leaves it out.
+    void add_former(const std::string& name, const std::string& successor) const;
     /// A number of bytes with its unit, such as 300KB.
     Option add_byte_count(const std::string& name, std::size_t& variable,
                           const std::string& description) const;

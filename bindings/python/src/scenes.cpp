@@ -119,9 +119,11 @@ void choose_collision(Scene& scene, const std::string& mode) {
     auto* const newton = std::get_if<NewtonOptions>(&scene.simulation.solver);
     const auto chosen = static_cast<CollisionMode>(found - kCollisionModes.begin());
     if (newton == nullptr && chosen != CollisionMode::Particles)
-        throw Error(ErrorCode::InvalidOptions, "collision is '" + mode +
-                                                   "', and with the jakobsen solver of the "
-                                                   "scene only particles collide");
+        throw Error(
+            ErrorCode::InvalidOptions,
+            "collision is '" + mode +
+                "', and with the scene's jakobsen solver only particles collide; leave it out, or set "
+                "\"solver\": \"newton\" in the scene");
     if (newton == nullptr) return;
     newton->collision = chosen;
     newton->untangle = newton->untangle && scene.simulation.surfaces_collide();
