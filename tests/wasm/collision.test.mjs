@@ -117,6 +117,21 @@ describe('A collision', () => {
         assert.deepEqual(fallen({ faces, surfaces: true }), [0, 0]);
         assert.ok(fallen({})[0] > 0);
     });
+    test('of surfaces keeps faces off each other, unless told otherwise', () => {
+        const faces = [0, 1, 2, 3, 4, 5];
+        const positions = [-1, -1, 5, 1, -1, 5, 0, 1, 5, 0, 0, 5.2, 0.1, 0, 5.4, 0, 0.1, 5.4];
+        const pairsAfterFall = (options) => {
+            const collision = echinus.makeCollision({ positions, faces, colliders: [{ map }], thickness: 0.05, surfaces: true, ...options });
+            for (let step = 0; step < 20; ++step) {
+                for (let i = 11; i < 18; i += 3) collision.positions[i] -= 0.02;
+                collision.correct(SECONDS);
+            }
+            const [sheet, spike] = [collision.positions.slice(0, 9), collision.positions.slice(9)];
+            return echinus.makeMesh(sheet, [0, 1, 2]).intersectingPairs(echinus.makeMesh(spike, [0, 1, 2])).length / 2;
+        };
+        assert.equal(pairsAfterFall({}), 0);
+        assert.equal(pairsAfterFall({ selfCollision: false }), 1);
+    });
     test('does not follow a place that is absurdly far, and goes on once the particle is back', () => {
         const collision = echinus.makeCollision({ positions: [3, 0, 0], colliders: [{ map }], thickness: 0.01 });
         for (const far of [1e20, 3e38]) {

@@ -62,12 +62,13 @@ export class Collision extends Handle {
     }
 }
 
-const DEFAULTS = { positions: undefined, faces: [], colliders: undefined, thickness: undefined, friction: 0.5, surfaces: false, selfCollision: false, allowOpenColliders: false, untangle: false };
+const DEFAULTS = { positions: undefined, faces: [], colliders: undefined, thickness: undefined, friction: 0.5, surfaces: false, selfCollision: undefined, allowOpenColliders: false, untangle: false };
 const COLLIDER_DEFAULTS = { map: undefined, position: [0, 0, 0], rotation: NO_TURN, scale: 1 };
 
 /** The options with all their defaults, checked as far as C++ does not. */
 function complete(options) {
     const all = withDefaults(options, DEFAULTS, 'an option of a collision');
+    if (all.selfCollision === undefined) all.selfCollision = all.surfaces;
     if (!Array.isArray(all.colliders) || all.colliders.length === 0) refuse('colliders must be an array of at least one collider');
     for (const name of ['thickness', 'friction']) if (!(Number.isFinite(all[name]) && all[name] >= 0)) refuse(`${name} is ${String(all[name])}; it must be a number, not negative`);
     for (const name of ['surfaces', 'selfCollision', 'allowOpenColliders', 'untangle']) if (typeof all[name] !== 'boolean') refuse(`${name} must be true or false`);

@@ -485,7 +485,7 @@ export interface CollisionOptions {
     faces?: ArrayLike<number>;
     /** Keep faces off models, not only particles (docs/surfaces.md). Needs exact maps. Default: false. */
     surfaces?: boolean;
-    /** With `surfaces`: keep faces off each other, too. Default: false. */
+    /** Keep faces off each other, too, which needs `surfaces`. Default: as `surfaces`. */
     selfCollision?: boolean;
     /** Accept the exact map of an open mesh, near whose holes particles get in and out. Default: false. */
     allowOpenColliders?: boolean;
