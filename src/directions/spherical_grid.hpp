@@ -2,7 +2,7 @@
 
 #include "directions/bilinear_grid.hpp"
 #include "directions/lattice.hpp"
-#include "geometry/angles.hpp"
+#include "geometry/elementary.hpp"
 #include "geometry/whole_numbers.hpp"
 
 #include <echinus/directions.hpp>

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "directions/checker.hpp"
 #include "directions/grids.hpp"
 #include "directions/lattice.hpp"
 #include "geometry/whole_numbers.hpp"
@@ -62,5 +63,15 @@ inline bool is_outward(bool centre_inside, std::uint32_t k) {
 
 /// The part of a view that the options and the mesh around its centre decide, before any ray is cast.
 DistanceMapView view_of(const DistanceMapOptions& options, const LatticeMesh& lattice);
+
+/// Checks what a query relies on: the invariants of DistanceMapView, finite numbers, counts within the limits
+/// of DistanceMapOptions, existing enumerators. One pass.
+/// @throws Error Damaged
+void validate(const Checker& checker, const DistanceMapView& map, const DistanceMapStatistics& statistics);
+
+/// The last step of a build.
+/// @throws Error Damaged where the map contradicts itself, through a fault of this library
+DistanceMap proven(const DistanceMapView& map, const DistanceMapStatistics& statistics,
+                   std::uint64_t source_hash, std::shared_ptr<const void> storage);
 
 } // namespace echinus

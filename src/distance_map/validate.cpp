@@ -1,6 +1,5 @@
-#include "distance_map/validate.hpp"
-
 #include "directions/spherical_grid.hpp"
+#include "distance_map/layout.hpp"
 
 #include <cmath>
 #include <utility>

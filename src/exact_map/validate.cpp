@@ -1,6 +1,5 @@
-#include "exact_map/validate.hpp"
-
 #include "directions/lattice.hpp"
+#include "exact_map/layout.hpp"
 
 #include <algorithm>
 #include <array>

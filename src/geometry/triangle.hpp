@@ -1,6 +1,6 @@
 #pragma once
 
-#include "geometry/angles.hpp"
+#include "geometry/elementary.hpp"
 
 #include <echinus/contact.hpp>
 #include <echinus/geometry.hpp>

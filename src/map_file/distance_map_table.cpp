@@ -1,5 +1,5 @@
 
-#include "distance_map/validate.hpp"
+#include "distance_map/layout.hpp"
 #include "map_file/tables.hpp"
 
 #include <utility>

@@ -1,6 +1,5 @@
 
 #include "exact_map/layout.hpp"
-#include "exact_map/validate.hpp"
 #include "map_file/tables.hpp"
 
 #include <cstdint>

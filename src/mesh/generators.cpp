@@ -1,5 +1,5 @@
 #include "files/text.hpp"
-#include "geometry/angles.hpp"
+#include "geometry/elementary.hpp"
 #include "geometry/whole_numbers.hpp"
 
 #include <echinus/error.hpp>

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <echinus/export.hpp>
 #include <echinus/geometry.hpp>
 #include <echinus/mesh.hpp>
 
@@ -44,3 +45,21 @@ std::vector<std::uint32_t> join_near_vertices(std::span<const Vec3f> vertices,
 TriangleMesh with_common_corners(const TriangleMesh& mesh, double width);
 
 } // namespace echinus
+
+ECHINUS_EXPORT_BEGIN
+
+namespace echinus {
+
+struct WeldedMesh {
+    TriangleMesh mesh;
+    /// [vertex_count] for each vertex the first one of the input that stands there.
+    std::vector<std::uint32_t> sources;
+};
+
+/// weld(), for those who have more to say about the vertices than where they stand.
+/// @throws Error InvalidMesh as weld() does
+WeldedMesh weld_with_sources(const TriangleMesh& mesh);
+
+} // namespace echinus
+
+ECHINUS_EXPORT_END

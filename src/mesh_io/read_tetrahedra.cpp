@@ -1,5 +1,5 @@
 #include "files/read_file.hpp"
-#include "mesh_io/tetrahedra_readers.hpp"
+#include "mesh_io/readers.hpp"
 #include "tetrahedra/mend.hpp"
 
 #include <cmath>

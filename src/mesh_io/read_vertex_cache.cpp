@@ -1,6 +1,6 @@
 #include "files/read_file.hpp"
 #include "mesh/local_frame.hpp"
-#include "mesh/weld.hpp"
+#include "mesh/seams.hpp"
 #include "mesh_io/mesh_source.hpp"
 #include "mesh_io/point_cache.hpp"
 #include "mesh_io/readers.hpp"

@@ -1,4 +1,4 @@
-#include "mesh_io/tetrahedra_readers.hpp"
+#include "mesh_io/readers.hpp"
 
 #include <algorithm>
 #include <array>

@@ -1,11 +1,14 @@
 #pragma once
 
+#include "mesh_io/line_scanner.hpp"
 #include "mesh_io/mesh_source.hpp"
 
 #include <echinus/mesh.hpp>
 #include <echinus/mesh_io.hpp>
 
 #include <cstdint>
+#include <string>
+#include <string_view>
 #include <vector>
 
 namespace echinus {
@@ -54,5 +57,106 @@ MeshAndEdges read_mesh_and_edges(const MeshSource& source);
 /// @pre beginning.bytes.size() >= 84, the head of a binary STL file
 /// @throws Error WrongFormat or Damaged
 void require_beginning(const MeshSource& beginning);
+
+enum class NumberType { Int32, Int64, Float32, Float64 };
+
+/// A file of lines of words and, between them, of numbers: in words that blanks and ends of lines separate,
+/// or in bytes.
+class NumberSource {
+  public:
+    explicit NumberSource(const MeshSource& source) : source_(source) {}
+    virtual ~NumberSource() = default;
+
+    /// The words of the next line that has any; none at the end.
+    virtual std::vector<std::string_view> next_line() = 0;
+    /// @throws Error Damaged when there is none
+    virtual std::int64_t integer(NumberType type, const char* what) = 0;
+    /// @throws Error Damaged when there is none; InvalidMesh when it is not finite as a float
+    virtual double coordinate(NumberType type) = 0;
+    /// Three of them.
+    Vec3d position(NumberType type);
+    /// Passes over so many numbers, which may be infinite or none. @param size  of each where they are bytes
+    /// @throws Error Damaged when there are fewer
+    virtual void skip(std::size_t count, std::size_t size) = 0;
+    /// Goes on behind a line that begins with this word.
+    /// @throws Error Damaged when there is none
+    virtual void skip_to_line(const std::string& word) = 0;
+    /// Says where in the file.
+    [[noreturn]] void fail(ErrorCode code, const std::string& what) const {
+        source_.fail(code, place() + ": " + what);
+    }
+
+    /// A number of things, which may be any up to 2^32 - 2.
+    std::size_t count(NumberType type, const char* what);
+    /// next_line(), where the format promises one.
+    std::vector<std::string_view> require_line(const std::string& what);
+
+  protected:
+    /// "line 5", or "byte 70".
+    virtual std::string place() const = 0;
+
+    const MeshSource& source_;
+};
+
+/// Numbers in words. Errors name the line.
+class TextNumbers final : public NumberSource {
+  public:
+    TextNumbers(const MeshSource& source, LineScanner& scanner) : NumberSource(source), scanner_(scanner) {
+        scanner_.read_across_lines();
+    }
+
+    std::vector<std::string_view> next_line() override;
+    std::int64_t integer(NumberType type, const char* what) override;
+    double coordinate(NumberType type) override;
+    void skip(std::size_t count, std::size_t size) override;
+    void skip_to_line(const std::string& word) override;
+
+  private:
+    std::string place() const override { return "line " + std::to_string(scanner_.line_number()); }
+
+    LineScanner& scanner_;
+};
+
+/// Numbers in bytes. Errors name the byte.
+class BinaryNumbers final : public NumberSource {
+  public:
+    BinaryNumbers(const MeshSource& source, std::size_t offset, ByteOrder order)
+        : NumberSource(source), bytes_(source, offset, order) {}
+
+    std::vector<std::string_view> next_line() override;
+    std::int64_t integer(NumberType type, const char* what) override;
+    double coordinate(NumberType type) override;
+    void skip(std::size_t count, std::size_t size) override;
+    void skip_to_line(const std::string& word) override;
+
+  private:
+    std::string place() const override { return "byte " + std::to_string(bytes_.offset()); }
+
+    ByteReader bytes_;
+};
+
+// One reader per kind of file of tetrahedra.
+//
+// All of them throw Error WrongFormat, Damaged or InvalidMesh. Vertices are finite and indices in range;
+// what else is wrong with the tetrahedra is for finish_tetrahedra() to say.
+
+/// The contents of a file.
+struct TetrahedraInFile {
+    std::vector<Vec3d> vertices; ///< finite as floats, too
+    std::vector<Tetrahedron> tetrahedra;
+};
+
+TetrahedraInFile read_msh(const MeshSource& source);
+TetrahedraInFile read_vtk(const MeshSource& source);
+/// A pair of files.
+TetrahedraInFile read_tetgen(const MeshSource& nodes, const MeshSource& elements);
+
+/// Moves the vertices to a local origin where that is needed (mesh/local_frame.hpp), turns negative
+/// tetrahedra round, drops vertices that none uses, and refuses what require_valid_tetrahedra() does, in the
+/// name of `source`.
+TetrahedraFile finish_tetrahedra(TetrahedraInFile read, const MeshSource& source);
+
+/// read_tetrahedra() for the bytes of a .msh or .vtk file.
+TetrahedraFile read_tetrahedra(const MeshSource& source);
 
 } // namespace echinus

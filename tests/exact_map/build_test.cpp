@@ -1,5 +1,5 @@
+#include "exact_map/build/face_tree.hpp"
 #include "exact_map/build/resolution.hpp"
-#include "exact_map/build/split_faces.hpp"
 #include "support/meshes.hpp"
 #include "support/random_points.hpp"
 

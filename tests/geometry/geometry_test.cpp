@@ -1,7 +1,7 @@
-#include "geometry/angles.hpp"
 #include "geometry/arena.hpp"
-#include "geometry/int128.hpp"
+#include "geometry/elementary.hpp"
 #include "geometry/orientation.hpp"
+#include "geometry/scratch.hpp"
 #include "geometry/whole_numbers.hpp"
 #include "support/random_points.hpp"
 
@@ -9,17 +9,22 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <limits>
 #include <numbers>
 #include <numeric>
 #include <optional>
+#include <random>
 #include <utility>
 #include <vector>
 
 using namespace echinus;
+using echinus::test::PortableRandom;
 
 TEST(Rotation, TurnsCounterClockwiseSeenAgainstTheAxis) {
     const Vec3d turned = Rotation::about({0, 0, 5}, std::numbers::pi / 2).apply({1, 0, 0});
@@ -268,4 +273,71 @@ TEST(Orientation, DistinguishesTheSmallestFloatBesideTheLargest) {
     EXPECT_EQ(orientation(tilted_a, tilted_b, tilted_c, {0, 0, 0}),
               -orientation(tilted_a, tilted_b, tilted_c, {tiny, 0, tiny}));
     EXPECT_NE(orientation(tilted_a, tilted_b, tilted_c, {0, 0, 0}), 0);
+}
+
+TEST(Elementary, LogarithmsAreThoseOfTheCLibraryToRounding) {
+    PortableRandom random(1);
+    for (int i = 0; i < 100000; ++i) {
+        const double x = std::ldexp(random.uniform(0.5, 1), static_cast<int>(random.uniform(-1000, 1000)));
+        EXPECT_NEAR(portable_log(x), std::log(x), 4e-16 * std::max(1.0, std::abs(std::log(x)))) << x;
+        const double near_one = 1 + random.uniform(-1e-3, 1e-3);
+        EXPECT_NEAR(portable_log(near_one), std::log(near_one), 4e-16 * std::abs(std::log(near_one)) + 1e-19);
+    }
+    EXPECT_EQ(portable_log(1), 0);
+}
+
+TEST(Elementary, AnglesAreThoseOfTheCLibraryToRounding) {
+    PortableRandom random(2);
+    for (int i = 0; i < 100000; ++i) {
+        const double x = std::ldexp(random.uniform(-1, 1), static_cast<int>(random.uniform(-8, 8))),
+                     y = std::ldexp(random.uniform(-1, 1), static_cast<int>(random.uniform(-8, 8)));
+        EXPECT_NEAR(portable_atan2(y, x), std::atan2(y, x), 1.8e-15) << y << ' ' << x;
+    }
+    EXPECT_EQ(portable_atan2(0, 1), 0);
+    EXPECT_EQ(portable_atan2(0, 0), 0);
+    EXPECT_EQ(portable_atan2(0, -1), std::numbers::pi);
+    EXPECT_EQ(portable_atan2(-0.0, -1), -std::numbers::pi);
+    EXPECT_EQ(portable_atan2(2, 0), std::numbers::pi / 2);
+}
+
+TEST(Elementary, HasTheSameBitsOnEveryMachine) {
+    EXPECT_EQ(std::bit_cast<std::uint64_t>(portable_log(0.3)), 0xbff34378fcbda720u);
+    EXPECT_EQ(std::bit_cast<std::uint64_t>(portable_atan2(0.3, -0.7)), 0x4005e4c36ca0118au);
+}
+
+TEST(Scratch, KeepsArraysApartInWhateverOrderTheyAreTakenAndGivenBack) {
+    Scratch scratch;
+    std::mt19937 random(1);
+    for (int round = 0; round < 50; ++round) {
+        std::vector<std::pair<std::uint32_t, ScratchVector<std::uint32_t>>> arrays;
+        std::uint32_t next = 0;
+        for (int turn = 0; turn < 200; ++turn) {
+            if (!arrays.empty() && random() % 3 == 0) {
+                const std::size_t gone = random() % arrays.size();
+                std::swap(arrays[gone], arrays.back());
+                arrays.pop_back();
+            } else {
+                ScratchVector<std::uint32_t> array(random() % 300 + 1, scratch);
+                EXPECT_EQ(reinterpret_cast<std::uintptr_t>(array.data()) % Scratch::kAlignment, 0u);
+                std::iota(array.begin(), array.end(), next);
+                arrays.emplace_back(next, std::move(array));
+                next += 1000;
+            }
+            for (const auto& [first, array] : arrays)
+                for (std::uint32_t i = 0; i < array.size(); ++i) ASSERT_EQ(array[i], first + i);
+        }
+    }
+}
+
+TEST(Scratch, TakesTheSameMemoryAgainOnceItHasSeenTheMost) {
+    Scratch scratch;
+    const auto step = [&] {
+        const ScratchVector<double> a(1000, scratch);
+        const ScratchVector<double> b(500, scratch);
+        return std::pair(a.data(), b.data());
+    };
+    step();
+    const auto second = step();
+    EXPECT_EQ(step(), second);
+    EXPECT_LT(second.second - second.first, 1100);
 }

@@ -1,4 +1,4 @@
-#include "exact_map/validate.hpp"
+#include "exact_map/layout.hpp"
 #include "support/expectations.hpp"
 #include "support/map_file_attack.hpp"
 #include "support/meshes.hpp"

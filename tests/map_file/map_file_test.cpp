@@ -1,4 +1,4 @@
-#include "distance_map/validate.hpp"
+#include "distance_map/layout.hpp"
 #include "support/distance_maps.hpp"
 #include "support/expectations.hpp"
 #include "support/map_file_attack.hpp"

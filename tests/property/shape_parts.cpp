@@ -1,6 +1,6 @@
 #include "property/shape_parts.hpp"
 
-#include "geometry/angles.hpp"
+#include "geometry/elementary.hpp"
 
 #include <algorithm>
 #include <map>

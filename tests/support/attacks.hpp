@@ -1,7 +1,6 @@
 #pragma once
 
 #include "mesh_io/readers.hpp"
-#include "mesh_io/tetrahedra_readers.hpp"
 
 #include <echinus/error.hpp>
 #include <echinus/mesh.hpp>

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "directions/spherical_grid.hpp"
-#include "geometry/angles.hpp"
+#include "geometry/elementary.hpp"
 #include "rivals/superquadric_map/superquadric_map.hpp"
 
 #include <algorithm>

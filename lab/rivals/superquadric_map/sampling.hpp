@@ -2,7 +2,7 @@
 
 #include "directions/lattice.hpp"
 #include "directions/spherical_grid.hpp"
-#include "geometry/angles.hpp"
+#include "geometry/elementary.hpp"
 #include "rivals/superquadric_map/superquadric.hpp"
 
 #include <vector>

@@ -5,7 +5,6 @@
 #include "directions/lattice.hpp"
 #include "distance_map/build/vertex_correction.hpp"
 #include "distance_map/layout.hpp"
-#include "distance_map/validate.hpp"
 #include "geometry/whole_numbers.hpp"
 #include "mesh/mesh_hash.hpp"
 

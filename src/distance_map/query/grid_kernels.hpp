@@ -2,8 +2,8 @@
 
 #include <echinus/distance_map.hpp>
 
-/// The kernels of each grid, in files of their own so that they compile side by side: every grid is compiled
-/// for every instruction set, format of entries and kind of answer.
+/// The kernels of the grids, in several files so that they compile side by side: every grid is compiled for
+/// every instruction set, format of entries and kind of answer.
 namespace echinus {
 
 /// The batches of query.cpp on one kind of grid.

@@ -3,6 +3,7 @@
 // the same order, without fused multiply-add.
 
 #include "directions/bilinear_grid.hpp"
+#include "geometry/elementary.hpp"
 
 #include <array>
 #include <cstddef>
@@ -15,13 +16,30 @@
 #define ECHINUS_DISTANCE_MAP_LANES_INL_HPP
 #endif
 
-#include "directions/angles-inl.hpp"
 #include "simd/rows-inl.hpp"
 
 #if HWY_TARGET != HWY_SCALAR // whose vectors have one lane
 HWY_BEFORE_NAMESPACE();
 namespace echinus {
 namespace HWY_NAMESPACE {
+
+/// atan2_polynomial() of geometry/elementary.hpp: the same operations in the same order, hence the same bits.
+HWY_INLINE FloatLanes angle_of(FloatLanes y, FloatLanes x) {
+    const FloatLanes ax = hn::Abs(x);
+    const FloatLanes ay = hn::Abs(y);
+    const FloatMask flat = hn::Gt(ax, ay);
+    const FloatLanes larger = choose(flat, ax, ay);
+    const FloatLanes smaller = choose(flat, ay, ax);
+    const FloatLanes ratio = hn::IfThenElseZero(hn::Gt(larger, hn::Zero(kFloat)), hn::Div(smaller, larger));
+    const FloatLanes s = hn::Mul(ratio, ratio);
+    FloatLanes p = splat(kAtanCoefficients[0]);
+    for (std::size_t i = 1; i < kAtanCoefficients.size(); ++i)
+        p = hn::Add(hn::Mul(p, s), splat(kAtanCoefficients[i]));
+    FloatLanes angle = hn::Mul(p, ratio);
+    angle = choose(hn::Gt(ay, ax), hn::Sub(splat(kPi / 2), angle), angle);
+    angle = choose(hn::Lt(x, hn::Zero(kFloat)), hn::Sub(splat(kPi), angle), angle);
+    return hn::CopySign(angle, y);
+}
 
 /// turned_last() and turned_back() of directions/bilinear_grid.hpp.
 HWY_INLINE PointLanes turned_last(PoleAxis axis, const PointLanes& v) {

@@ -4,7 +4,6 @@
 #include "exact_map/build/open_surface.hpp"
 #include "exact_map/build/resolution.hpp"
 #include "exact_map/layout.hpp"
-#include "exact_map/validate.hpp"
 #include "files/text.hpp"
 #include "geometry/parallel.hpp"
 #include "geometry/whole_numbers.hpp"

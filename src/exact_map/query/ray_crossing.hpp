@@ -1,7 +1,7 @@
 #pragma once
 
 #include "directions/face_cone.hpp"
-#include "geometry/int128.hpp"
+#include "geometry/whole_numbers.hpp"
 
 #include <algorithm>
 #include <array>

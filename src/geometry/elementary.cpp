@@ -1,4 +1,4 @@
-#include "geometry/angles.hpp"
+#include "geometry/elementary.hpp"
 
 #include <echinus/geometry.hpp>
 
