@@ -2,6 +2,7 @@
 
 import os
 import pathlib
+import re
 import subprocess
 
 import numpy as np
@@ -10,8 +11,12 @@ import pytest
 import echinus as ech
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-MODELS = ROOT / "models"
 SHARED_MESHES = ROOT / ".." / "shared" / "meshes"
+
+
+def programs_of(document):
+    """The programs in Python that a document shows."""
+    return re.findall(r"^```python\n(.*?)^```", (ROOT / document).read_text(), re.MULTILINE | re.DOTALL)
 
 
 def torus():
@@ -33,13 +38,6 @@ def open_torus():
     mesh = torus()
     is_above = (mesh.vertices[mesh.faces][:, :, 2] > 0.1).all(axis=1)
     return ech.Mesh(mesh.vertices, mesh.faces[~is_above])
-
-
-def horse_file():
-    path = MODELS / "horse.3ds"
-    if not path.exists():
-        pytest.skip("models/ has no horse: scripts/setup fetches it")
-    return path
 
 
 def run_program(*arguments):

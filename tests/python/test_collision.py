@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import echinus as ech
-from guide import programs_of
+from support import programs_of
 
 SECONDS = 1 / 60
 BALL = ech.make_sphere(1, 40, 20)
@@ -41,15 +41,6 @@ def test_particles_that_fall_on_a_ball_end_outside_and_slow_down():
     collision.set_collider_friction(0, 1)
     collision.place_collider(0, (50, 0, 0))
     assert len(collision.correct(positions, positions.copy(), seconds=SECONDS)) == 0
-
-
-def test_a_particle_that_has_exploded_is_left_as_it_is():
-    collision = ech.ParticleCollision([ech.Collider(MAP)], 0.01)
-    previous = np.float32([[0, 0, 2], [0, 0, 3]])
-    positions = np.float32([[np.nan, 0, 0], [0, 0, -3]])
-    assert list(collision.correct(previous, positions, seconds=SECONDS)) == [1]
-    assert np.isnan(positions[0, 0])
-    assert positions[1, 2] > 1
 
 
 def test_faces_that_fall_on_a_ball_meet_neither_it_nor_each_other():

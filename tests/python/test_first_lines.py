@@ -5,7 +5,6 @@
 
 import os
 import pathlib
-import re
 import shutil
 import sys
 import tempfile
@@ -14,8 +13,8 @@ import numpy as np
 import pytest
 
 import echinus as ech
+from support import ROOT, programs_of
 
-ROOT = pathlib.Path(__file__).resolve().parents[2]
 HORSE = ROOT / "models" / "horse.3ds"
 LINES = """
 import echinus as ech
@@ -27,10 +26,6 @@ m.contacts(points, margin=0.01)                # .inside .depth .normal .point .
 m.sweep(start, end); m.save("horse.ech"); ech.load("horse.ech")
 sim = ech.Simulation.from_scene("scenes/horse.json"); sim.step(); sim.positions      # a view, no copy
 """
-
-
-def programs_of(document):
-    return re.findall(r"^```python\n(.*?)^```", (ROOT / document).read_text(), re.MULTILINE | re.DOTALL)
 
 
 def prepare(folder):
