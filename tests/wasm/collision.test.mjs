@@ -22,17 +22,6 @@ const insideOf = (mesh, positions) => Array.from({ length: positions.length / 3 
     .filter((i) => mesh.windingNumber(positions.subarray(3 * i, 3 * i + 3)) > 0.5).length;
 
 describe('A collision', () => {
-    test('leaves particles alone that meet nothing', () => {
-        const positions = placesOutside(200);
-        const collision = echinus.makeCollision({ positions, colliders: [{ map, position: [10, 0, 0] }], thickness: 0.02 });
-        const random = pseudoRandom(4);
-        for (let step = 0; step < 20; ++step) {
-            collision.positions.forEach((c, i) => (collision.positions[i] = c + 0.1 * (random() - 0.5)));
-            const sent = collision.positions.slice();
-            assert.equal(collision.correct(SECONDS), 0);
-            assert.deepEqual(collision.positions, sent);
-        }
-    });
     test('keeps particles outside that a solver throws about, and says which', () => {
         const positions = placesOutside(1000);
         const collision = echinus.makeCollision({ positions, colliders: [{ map }], thickness: 0.01 });
@@ -50,18 +39,6 @@ describe('A collision', () => {
             correctedInAll += count;
         }
         assert.ok(correctedInAll > 1000, `${correctedInAll} corrections`);
-    });
-    test('lets nothing through a thin plate, however fast, and gives the velocity that is left', () => {
-        const plate = echinus.buildMap(echinus.makeBox([2, 2, 0.001]));
-        const collision = echinus.makeCollision({ positions: [0.1, 0.2, 1, 5, 5, 1], colliders: [{ map: plate }], thickness: 0.01, friction: 0 });
-        collision.positions.set([0.3, 0.2, -50, 5, 5, -50]); // as from a velocity of 3 km/s
-        assert.equal(collision.correct(SECONDS), 1);
-        assert.deepEqual([...collision.corrected], [0]);
-        const [x, y, z] = collision.positions;
-        assert.ok(z > 0 && z < 0.02, `${z}`);
-        assert.ok(Math.abs(y - 0.2) < 1e-4 && x > 0.1);
-        assert.ok(collision.velocities[2] >= -1e-3, 'none of it into the plate');
-        assert.equal(collision.positions[5], -50);
     });
     test('brakes by friction what slides, and not without it', () => {
         const floor = echinus.buildMap(echinus.makeBox([4, 4, 1]));
@@ -131,23 +108,6 @@ describe('A collision', () => {
         };
         assert.equal(pairsAfterFall({}), 0);
         assert.equal(pairsAfterFall({ selfCollision: false }), 1);
-    });
-    test('does not follow a place that is absurdly far, and goes on once the particle is back', () => {
-        const collision = echinus.makeCollision({ positions: [3, 0, 0], colliders: [{ map }], thickness: 0.01 });
-        for (const far of [1e20, 3e38]) {
-            collision.positions.set([far, 0, 0]);
-            assert.equal(collision.correct(SECONDS), 0);
-        }
-        collision.positions.set([1, 0, 0]);
-        assert.equal(collision.correct(SECONDS), 1);
-        assert.ok(!map.contains([...collision.positions]));
-    });
-    test('does not follow a place that is not finite', () => {
-        const collision = echinus.makeCollision({ positions: [3, 0, 0, 0, 0, 0], colliders: [{ map }], thickness: 0.01 });
-        collision.positions.set([NaN, 0, 0, 0, 0, Infinity]);
-        assert.equal(collision.correct(SECONDS), 0);
-        collision.positions.set([3.5, 0, 0, 0, 0, 0.1]);
-        assert.equal(collision.correct(SECONDS), 0);
     });
     test('refuses what it cannot work with, in a sentence', () => {
         const good = { positions: [3, 0, 0], colliders: [{ map }], thickness: 0.01 };
