@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdio>
+#include <filesystem>
 #include <numeric>
 #include <string>
 #include <string_view>
@@ -11,6 +12,18 @@
 #include <vector>
 
 namespace echinus {
+
+/// The path that UTF-8 names. Windows would read bytes in its old code page, which it does with those that
+/// are not UTF-8.
+inline std::filesystem::path utf8_path(std::string_view text) {
+#ifdef _WIN32
+    try {
+        return std::u8string(text.begin(), text.end());
+    } catch (const std::filesystem::filesystem_error&) {
+    }
+#endif
+    return text;
+}
 
 /// The text of a file, behind the byte order mark of UTF-8 if there is one.
 /// @param fail  is called with a clause, and must throw, when the mark says that the text is UTF-16 or UTF-32

@@ -1,4 +1,4 @@
-#include "files/utf8_path.hpp"
+#include "files/text.hpp"
 #include "scene/json_object.hpp"
 #include "scene/option_keys.hpp"
 

@@ -1,4 +1,4 @@
-#include "files/utf8_path.hpp"
+#include "files/text.hpp"
 
 #include <echinus/error.hpp>
 #include <echinus_scene/scene.hpp>

@@ -15,6 +15,10 @@
 #include <string>
 #include <vector>
 
+#ifndef _WIN32
+#include <sys/mman.h>
+#endif
+
 using namespace echinus;
 
 namespace {
@@ -234,3 +238,21 @@ TEST(Crossings, StayInTheSphereAndAscend) {
     }
     for (float distance : crossings.distances) EXPECT_TRUE(distance >= 0 && distance <= lattice.radius);
 }
+
+#ifndef _WIN32
+
+TEST(Lattice, RefusesMoreFacesThanCanBeNumbered) {
+    // Address space that nothing may read.
+    const std::size_t count = kMostFaces + 1, bytes = count * sizeof(Triangle);
+    void* space = mmap(nullptr, bytes, PROT_NONE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
+    if (space == MAP_FAILED) GTEST_SKIP() << "no room for so many addresses";
+    LatticeSnapper snapper({static_cast<const Triangle*>(space), count});
+    LatticeMesh lattice;
+    test::expect_error(ErrorCode::InvalidMesh, "1073741825 faces",
+                       [&] { snapper.snap(std::vector<Vec3f>(3), lattice); });
+    munmap(space, bytes);
+    test::expect_error(ErrorCode::InvalidMesh, "3221225473 vertices",
+                       [] { require_numberable(1, 3 * kMostFaces + 1); });
+}
+
+#endif

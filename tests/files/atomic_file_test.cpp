@@ -1,6 +1,6 @@
 #include "files/atomic_file.hpp"
 #include "files/system.hpp"
-#include "files/utf8_path.hpp"
+#include "files/text.hpp"
 #include "support/expectations.hpp"
 #include "support/temporary_folder.hpp"
 #include "support/wine.hpp"

@@ -15,6 +15,10 @@
 #include <random>
 #include <thread>
 
+#ifndef _WIN32
+#include <sys/stat.h>
+#endif
+
 using namespace echinus;
 using namespace echinus::test;
 namespace fs = std::filesystem;
@@ -266,3 +270,24 @@ TEST_F(WriteMesh, ReportsAFolderThatIsMissingAndAFullDisk) {
     fs::create_symlink("/dev/full", path("full.obj"));
     expect_error(ErrorCode::Unwritable, "/dev/full", [&] { write_mesh(path("full.obj"), box); });
 }
+
+#ifndef _WIN32
+
+TEST_F(ReadMesh, ReadsTheSameFromAPipe) {
+    const TriangleMesh torus = make_torus(1, 0.25, 128, 64); // of more bytes than are checked first
+    for (const ExportedKind& kind : kExportedKinds) {
+        SCOPED_TRACE(kind.exporter);
+        const fs::path file = path(std::string("torus_") + kind.exporter + kind.ending);
+        const fs::path pipe = path(std::string("pipe_") + kind.exporter + kind.ending);
+        export_with_assimp(file, torus, kind);
+        const TriangleMesh expected = read_mesh(file);
+        ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
+        const std::jthread writer(
+            [&] { std::ofstream(pipe, std::ios::binary) << std::ifstream(file, std::ios::binary).rdbuf(); });
+        const TriangleMesh mesh = read_mesh(pipe);
+        EXPECT_EQ(mesh.vertices, expected.vertices);
+        EXPECT_EQ(mesh.faces, expected.faces);
+    }
+}
+
+#endif

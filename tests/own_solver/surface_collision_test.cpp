@@ -1,6 +1,5 @@
 // Contact of surfaces: no face of the deformable ever meets a model. Every frame is judged exactly.
 
-#include "support/cloth_meshes.hpp"
 #include "support/custom_maps.hpp"
 #include "support/draping.hpp"
 #include "support/instruction_sets.hpp"

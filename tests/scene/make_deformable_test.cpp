@@ -1,7 +1,7 @@
 // Scenes whose cloth is a mesh.
 
-#include "support/cloth_meshes.hpp"
 #include "support/expectations.hpp"
+#include "support/meshes.hpp"
 #include "support/temporary_folder.hpp"
 
 #include <echinus/error.hpp>

@@ -1,10 +1,10 @@
 // Colliders whose vertices move. Every frame is judged exactly, against the mesh as it is then.
 
-#include "support/cloth_meshes.hpp"
 #include "support/draping.hpp"
 #include "support/expectations.hpp"
 #include "support/instruction_sets.hpp"
 #include "support/kinds_of_simulations.hpp"
+#include "support/meshes.hpp"
 #include "support/surface_judge.hpp"
 
 #include <echinus/simulation.hpp>

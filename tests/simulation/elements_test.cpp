@@ -4,8 +4,8 @@
 #include "simulation/surfaces/elements.hpp"
 #include "simulation/surfaces/near_elements.hpp"
 #include "simulation/surfaces/near_pairs.hpp"
-#include "support/cloth_meshes.hpp"
 #include "support/instruction_sets.hpp"
+#include "support/meshes.hpp"
 #include "support/random_points.hpp"
 
 #include <echinus/simulation.hpp>

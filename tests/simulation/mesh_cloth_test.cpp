@@ -1,6 +1,5 @@
 // Cloth from any mesh.
 
-#include "support/cloth_meshes.hpp"
 #include "support/draping.hpp"
 #include "support/expectations.hpp"
 #include "support/instruction_sets.hpp"

@@ -1,8 +1,8 @@
 // Contact of a deformable with itself: no two of its faces ever meet. Every frame is judged exactly.
 
-#include "support/cloth_meshes.hpp"
 #include "support/draping.hpp"
 #include "support/expectations.hpp"
+#include "support/meshes.hpp"
 #include "support/random_points.hpp"
 #include "support/surface_judge.hpp"
 

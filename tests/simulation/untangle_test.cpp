@@ -1,6 +1,5 @@
 // Starts that intersect are parted, or refused by name.
 
-#include "support/cloth_meshes.hpp"
 #include "support/draping.hpp"
 #include "support/expectations.hpp"
 #include "support/meshes.hpp"

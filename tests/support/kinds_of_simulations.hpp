@@ -1,8 +1,8 @@
 #pragma once
 
-#include "support/cloth_meshes.hpp"
 #include "support/custom_maps.hpp"
 #include "support/draping.hpp"
+#include "support/meshes.hpp"
 #include "support/surface_judge.hpp"
 
 #include <echinus/simulation.hpp>

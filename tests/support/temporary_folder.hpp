@@ -1,6 +1,6 @@
 #pragma once
 
-#include "files/utf8_path.hpp"
+#include "files/text.hpp"
 
 #include <gtest/gtest.h>
 #include <unistd.h>

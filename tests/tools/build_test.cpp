@@ -1,6 +1,5 @@
 #include "support/meshes.hpp"
 #include "tools/command_line.hpp"
-#include "tools/sample_files.hpp"
 
 #include <echinus/map_file.hpp>
 #include <echinus/mesh_io.hpp>

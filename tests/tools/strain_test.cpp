@@ -1,4 +1,4 @@
-#include "commands/strain.hpp"
+#include "commands/verdict.hpp"
 
 #include <echinus/mesh.hpp>
 #include <echinus/simulation.hpp>

@@ -2,7 +2,7 @@
 
 #include "commands/descriptions.hpp"
 #include "files/read_file.hpp"
-#include "files/utf8_path.hpp"
+#include "files/text.hpp"
 #include "input_file.hpp"
 
 #include <echinus/error.hpp>

@@ -1,6 +1,6 @@
 #include "commands/simulation_result.hpp"
 
-#include "commands/strain.hpp"
+#include "commands/verdict.hpp"
 
 #include <fmt/format.h>
 

@@ -1,7 +1,6 @@
 #include "console/options.hpp"
 
 #include "files/text.hpp"
-#include "files/utf8_path.hpp"
 
 #include <CLI/CLI.hpp>
 

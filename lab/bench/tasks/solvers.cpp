@@ -1,7 +1,7 @@
 // The task solvers: how far cloth is stretched under each solver, beside the converged solution of the same
 // mesh, and how long a frame takes; and how it hangs at rest by the length of a frame.
 
-#include "commands/strain.hpp"
+#include "commands/verdict.hpp"
 #include "compare/turns.hpp"
 #include "task.hpp"
 

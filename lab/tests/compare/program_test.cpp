@@ -1,5 +1,4 @@
 #include "tools/command_line.hpp"
-#include "tools/sample_files.hpp"
 
 #include <nlohmann/json.hpp>
 

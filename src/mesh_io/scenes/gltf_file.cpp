@@ -1,7 +1,7 @@
 #include "mesh_io/scenes/gltf_file.hpp"
 
 #include "files/read_file.hpp"
-#include "files/utf8_path.hpp"
+#include "files/text.hpp"
 #include "geometry/whole_numbers.hpp"
 #include "mesh_io/mesh_source.hpp"
 #include "mesh_io/readers.hpp"
