@@ -1,8 +1,8 @@
 // Measures Echinus beside its rivals; scripts/bench runs it and lists the tasks.
 
+#include "compare/turns.hpp"
 #include "console/machine.hpp"
 #include "console/progress.hpp"
-#include "pinning.hpp"
 #include "task.hpp"
 
 #include <echinus/error.hpp>
@@ -55,7 +55,7 @@ int run(Arguments& arguments) {
         setting.effort = {.passes = 1, .enough_seconds = 0.3, .patience_seconds = 0.5};
     }
     if (!arguments.instruction_set.empty()) use_instruction_set(arguments.instruction_set);
-    pin_to_one_core();
+    comparison::pin_to_one_core();
     if (arguments.task == "guard") return guard(setting, arguments.recorded);
     if (arguments.resumes && fs::exists(arguments.target)) setting.earlier = Records::read(arguments.target);
     const std::vector<std::string> comments = comments_of(arguments);

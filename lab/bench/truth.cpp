@@ -1,10 +1,10 @@
 #include "truth.hpp"
 
+#include "compare/turns.hpp"
 #include "files/atomic_file.hpp"
 #include "judges/exact_judge.hpp"
 #include "judges/judge_trees.hpp"
 #include "mesh/mesh_hash.hpp"
-#include "pinning.hpp"
 
 #include <fmt/format.h>
 
@@ -89,8 +89,8 @@ void judge(const Subject& subject, const fs::path& cache, JudgedSet& set, SideJu
                             side_judge == SideJudge::Parity ? "" : "_winding");
     set.truth = {std::vector<std::uint8_t>(set.points.size()), std::vector<float>(set.points.size()), {}};
     if (read_cached(path, set.truth)) return;
-    unpin();
+    comparison::unpin();
     find_truth(subject, side_judge, set, set.truth);
-    pin_to_one_core();
+    comparison::pin_to_one_core();
     write_cached(path, set.truth);
 }

@@ -1,5 +1,7 @@
 #include "compare/turns.hpp"
 
+#include <sched.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -99,6 +101,35 @@ std::vector<Pace> take_turns(const std::vector<Racer>& racers, const TurnOptions
     std::vector<Pace> paces;
     for (std::vector<double>& of_racer : pass_ns) paces.push_back(pace_of(std::move(of_racer)));
     return paces;
+}
+
+namespace {
+
+/// The cores that the process may use, before anything was pinned.
+const cpu_set_t& all_cores() {
+    static const cpu_set_t cores = [] {
+        cpu_set_t set;
+        CPU_ZERO(&set);
+        sched_getaffinity(0, sizeof(set), &set);
+        return set;
+    }();
+    return cores;
+}
+
+} // namespace
+
+void pin_to_one_core() {
+    int last = 0;
+    for (int core = 0; core < CPU_SETSIZE; ++core)
+        if (CPU_ISSET(core, &all_cores())) last = core;
+    cpu_set_t one;
+    CPU_ZERO(&one);
+    CPU_SET(last, &one);
+    sched_setaffinity(0, sizeof(one), &one);
+}
+
+void unpin() {
+    sched_setaffinity(0, sizeof(cpu_set_t), &all_cores());
 }
 
 } // namespace echinus::comparison

@@ -71,4 +71,11 @@ inline double process_seconds() {
     return seconds_of(CLOCK_PROCESS_CPUTIME_ID);
 }
 
+/// Keeps the calling thread, and threads that it starts from now on, on one core: the last of those it may
+/// use, which the system uses least.
+void pin_to_one_core();
+
+/// Lets the calling thread run on every core again.
+void unpin();
+
 } // namespace echinus::comparison

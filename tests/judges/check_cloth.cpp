@@ -1,7 +1,7 @@
 #include "judges/check_cloth.hpp"
 
 #include "console/json.hpp"
-#include "judges/intersection_judge.hpp"
+#include "judges/exact_judge.hpp"
 #include "recording/simulation_folder.hpp"
 #include "recording/threads.hpp"
 

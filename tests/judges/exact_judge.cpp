@@ -4,16 +4,19 @@
 #include <CGAL/AABB_traits.h>
 #include <CGAL/AABB_tree.h>
 #include <CGAL/AABB_triangle_primitive.h>
+#include <CGAL/Bbox_3.h>
 #include <CGAL/Exact_predicates_exact_constructions_kernel.h>
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <CGAL/Side_of_triangle_mesh.h>
 #include <CGAL/Surface_mesh.h>
+#include <CGAL/box_intersection_d.h>
 #include <CGAL/intersections.h>
 
 #include <algorithm>
 #include <cmath>
 #include <iterator>
 #include <optional>
+#include <variant>
 
 namespace echinus::test {
 
@@ -174,6 +177,153 @@ ExactCrossings ExactRayCaster::cast(const Vec3d& direction) const {
             result.parameters.push_back(*parameter * scale);
     std::ranges::sort(result.parameters);
     return result;
+}
+
+// ---- Which faces intersect
+
+namespace {
+
+using Point = Kernel::Point_3;
+using Segment = Kernel::Segment_3;
+
+/// CGAL's predicates want triangles with an area and segments with a length.
+using Shape = std::variant<Point, Segment, Kernel::Triangle_3>;
+
+/// The convex hull of one to three points.
+Shape hull_of(std::vector<Point> points) {
+    std::sort(points.begin(), points.end());
+    points.erase(std::unique(points.begin(), points.end()), points.end());
+    if (points.size() == 1) return points[0];
+    if (points.size() == 2 || CGAL::collinear(points[0], points[1], points[2]))
+        return Segment(points.front(), points.back());
+    return Kernel::Triangle_3(points[0], points[1], points[2]);
+}
+
+bool meet(const Shape& a, const Shape& b) {
+    return std::visit([](const auto& p, const auto& q) { return CGAL::do_intersect(p, q); }, a, b);
+}
+
+Point to_cgal(const Vec3f& p) {
+    return {p.x, p.y, p.z};
+}
+
+/// A mesh with its vertices as CGAL takes them.
+struct Surface {
+    explicit Surface(const TriangleMesh& mesh) : faces(mesh.faces) {
+        for (const Vec3f& vertex : mesh.vertices) points.push_back(to_cgal(vertex));
+    }
+
+    Shape hull(const std::vector<std::uint32_t>& vertices) const {
+        std::vector<Point> corners;
+        for (const std::uint32_t vertex : vertices) corners.push_back(points[vertex]);
+        return hull_of(std::move(corners));
+    }
+
+    std::vector<Point> points;
+    std::vector<Triangle> faces;
+};
+
+using Box = CGAL::Box_intersection_d::Box_with_info_d<double, 3, std::uint32_t>;
+
+std::vector<Box> boxes_of(const Surface& surface) {
+    std::vector<Box> boxes;
+    for (std::uint32_t face = 0; face < surface.faces.size(); ++face) {
+        CGAL::Bbox_3 box;
+        for (const std::uint32_t vertex : surface.faces[face]) box += surface.points[vertex].bbox();
+        boxes.emplace_back(box, face);
+    }
+    return boxes;
+}
+
+// ---- Faces of one mesh ----
+
+using Vertices = std::vector<std::uint32_t>; // ascending, each once
+
+Vertices vertices_of(const Triangle& face) {
+    Vertices vertices(face.begin(), face.end());
+    std::sort(vertices.begin(), vertices.end());
+    vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
+    return vertices;
+}
+
+Vertices common(const Vertices& a, const Vertices& b) {
+    Vertices result;
+    std::set_intersection(a.begin(), a.end(), b.begin(), b.end(), std::back_inserter(result));
+    return result;
+}
+
+Vertices without(const Vertices& a, const Vertices& b) {
+    Vertices result;
+    std::set_difference(a.begin(), a.end(), b.begin(), b.end(), std::back_inserter(result));
+    return result;
+}
+
+/// Two faces with a common edge, both with an area, in one plane and to one side of it.
+bool folded_flat(const Surface& surface, std::uint32_t u, std::uint32_t v, std::uint32_t a, std::uint32_t b) {
+    const auto& points = surface.points;
+    return CGAL::coplanar(points[u], points[v], points[a], points[b]) &&
+           CGAL::coplanar_orientation(points[u], points[v], points[a], points[b]) == CGAL::POSITIVE;
+}
+
+/// Every corner, edge and face of the one against every one of the other with which it has no vertex in
+/// common.
+bool parts_meet(const Surface& surface, const Vertices& a, const Vertices& b) {
+    const auto part_of = [](const Vertices& all, unsigned mask) {
+        Vertices part;
+        for (std::size_t i = 0; i < all.size(); ++i)
+            if ((mask >> i & 1) != 0) part.push_back(all[i]);
+        return part;
+    };
+    for (unsigned i = 1; i < 1U << a.size(); ++i)
+        for (unsigned j = 1; j < 1U << b.size(); ++j) {
+            const Vertices p = part_of(a, i), q = part_of(b, j);
+            if (common(p, q).empty() && meet(surface.hull(p), surface.hull(q))) return true;
+        }
+    return false;
+}
+
+bool intersect_beyond_shared(const Surface& surface, const Triangle& face_a, const Triangle& face_b) {
+    const Vertices a = vertices_of(face_a), b = vertices_of(face_b), shared = common(a, b);
+    if (a == b) return true;
+    const Shape a_hull = surface.hull(a), b_hull = surface.hull(b);
+    if (shared.empty()) return meet(a_hull, b_hull);
+    const auto is_triangle = [](const Shape& s) { return std::holds_alternative<Kernel::Triangle_3>(s); };
+    if (!is_triangle(a_hull) || !is_triangle(b_hull)) return parts_meet(surface, a, b);
+    const Vertices a_own = without(a, shared), b_own = without(b, shared);
+    if (shared.size() == 2) return folded_flat(surface, shared[0], shared[1], a_own[0], b_own[0]);
+    return meet(surface.hull(a_own), b_hull) || meet(a_hull, surface.hull(b_own));
+}
+
+} // namespace
+
+bool triangles_intersect_by_cgal(const std::array<Vec3f, 3>& a, const std::array<Vec3f, 3>& b) {
+    return meet(hull_of({to_cgal(a[0]), to_cgal(a[1]), to_cgal(a[2])}),
+                hull_of({to_cgal(b[0]), to_cgal(b[1]), to_cgal(b[2])}));
+}
+
+std::vector<FacePair> intersecting_pairs_by_cgal(const TriangleMesh& first, const TriangleMesh& second) {
+    const Surface a(first), b(second);
+    std::vector<Box> a_boxes = boxes_of(a), b_boxes = boxes_of(b);
+    std::vector<FacePair> pairs;
+    CGAL::box_intersection_d(
+        a_boxes.begin(), a_boxes.end(), b_boxes.begin(), b_boxes.end(), [&](const Box& p, const Box& q) {
+            if (meet(a.hull(vertices_of(a.faces[p.info()])), b.hull(vertices_of(b.faces[q.info()]))))
+                pairs.push_back({p.info(), q.info()});
+        });
+    std::sort(pairs.begin(), pairs.end());
+    return pairs;
+}
+
+std::vector<FacePair> self_intersecting_pairs_by_cgal(const TriangleMesh& mesh) {
+    const Surface surface(mesh);
+    std::vector<Box> boxes = boxes_of(surface);
+    std::vector<FacePair> pairs;
+    CGAL::box_self_intersection_d(boxes.begin(), boxes.end(), [&](const Box& p, const Box& q) {
+        if (intersect_beyond_shared(surface, surface.faces[p.info()], surface.faces[q.info()]))
+            pairs.push_back({std::min(p.info(), q.info()), std::max(p.info(), q.info())});
+    });
+    std::sort(pairs.begin(), pairs.end());
+    return pairs;
 }
 
 } // namespace echinus::test

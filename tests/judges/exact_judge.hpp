@@ -1,5 +1,6 @@
 #pragma once
 
+#include <echinus/intersections.hpp>
 #include <echinus/mesh.hpp>
 
 #include <array>
@@ -53,5 +54,14 @@ class ExactRayCaster {
     struct Structure;
     std::unique_ptr<const Structure> structure_;
 };
+
+// Which faces intersect. The definitions are those of <echinus/intersections.hpp>.
+
+bool triangles_intersect_by_cgal(const std::array<Vec3f, 3>& a, const std::array<Vec3f, 3>& b);
+
+/// @pre indices are in range, vertices finite; as below
+std::vector<FacePair> intersecting_pairs_by_cgal(const TriangleMesh& a, const TriangleMesh& b);
+
+std::vector<FacePair> self_intersecting_pairs_by_cgal(const TriangleMesh& mesh);
 
 } // namespace echinus::test

@@ -1,7 +1,7 @@
 // The judge of intersections agrees with CGAL's exact predicates.
 
 #include "judges/check_cloth.hpp"
-#include "judges/intersection_judge.hpp"
+#include "judges/exact_judge.hpp"
 #include "judges/nasty_meshes.hpp"
 #include "mesh_io/point_cache.hpp"
 #include "support/expectations.hpp"

@@ -1,7 +1,7 @@
 // Queries of triangles agree with CGAL: intersections exactly, distances to rounding.
 
 #include "directions/lattice.hpp"
-#include "judges/intersection_judge.hpp"
+#include "judges/exact_judge.hpp"
 #include "judges/nasty_meshes.hpp"
 #include "support/random_points.hpp"
 

@@ -1,5 +1,4 @@
 #include "judges/exact_judge.hpp"
-#include "judges/intersection_judge.hpp"
 #include "judges/nasty_meshes.hpp"
 #include "support/meshes.hpp"
 #include "support/random_points.hpp"

@@ -1,9 +1,9 @@
 // The task surfaces: the same cloth with contact of its particles only, and of its faces with the model and
 // with each other. Judged exactly, on published positions.
 
-#include "commands/strain.hpp"
+#include "commands/verdict.hpp"
 #include "compare/turns.hpp"
-#include "judges/intersection_judge.hpp"
+#include "judges/exact_judge.hpp"
 #include "task.hpp"
 
 #include <echinus/exact_map.hpp>

@@ -6,7 +6,7 @@
 // few faces that are left.
 
 #include "rivals/classified_grid/layout.hpp"
-#include "rivals/classified_grid/nearest.hpp"
+#include "rivals/classified_grid/query.hpp"
 
 #include <hwy/cache_control.h>
 

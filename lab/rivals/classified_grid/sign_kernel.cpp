@@ -3,7 +3,7 @@
 // with lists of one length are lanes: lane by lane another cell and another face, none of them idle.
 
 #include "rivals/classified_grid/layout.hpp"
-#include "rivals/classified_grid/nearest.hpp"
+#include "rivals/classified_grid/query.hpp"
 
 #include <algorithm>
 #include <array>

@@ -2,8 +2,8 @@
 #include "rivals/common/closed_mesh.hpp"
 #include "rivals/superquadric_map/fit.hpp"
 #include "rivals/superquadric_map/layout.hpp"
-#include "rivals/superquadric_map/sampling.hpp"
 #include "rivals/superquadric_map/segments.hpp"
+#include "rivals/superquadric_map/superquadric.hpp"
 #include "rivals/superquadric_map/superquadric_map.hpp"
 
 #include <echinus/error.hpp>

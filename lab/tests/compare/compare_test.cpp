@@ -1,9 +1,12 @@
 #include "compare/compare.hpp"
+#include "compare/comparison_report.hpp"
+#include "compare/systems.hpp"
 #include "support/expectations.hpp"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <set>
 #include <stdexcept>
 #include <string>
 
@@ -204,4 +207,109 @@ TEST(Compare, TellsOfItsProgressAndStopsWhenTheListenerThrows) {
         if (what == "asking about S") throw std::runtime_error("stop");
     };
     EXPECT_THROW((void)compare(torus(), options), std::runtime_error);
+}
+
+namespace {
+
+SystemOptions few_segments() {
+    return {.segment_count = 3};
+}
+
+} // namespace
+
+TEST(Systems, HaveNamesOfOneWordThatNoTwoShare) {
+    std::set<std::string_view> names;
+    for (const SystemType& system : all_systems()) {
+        EXPECT_TRUE(names.insert(system.name).second) << system.name;
+        EXPECT_EQ(system.name.find_first_of(" ,"), std::string_view::npos) << system.name;
+        EXPECT_EQ(&system_named(system.name) == &system, true) << system.name;
+        EXPECT_EQ(system.available() || !system.package.empty(), true) << system.name;
+    }
+    for (const char* part : {"superquadric", "dense", "openvdb", "embree", "exact", "distance"})
+        EXPECT_TRUE(std::ranges::any_of(names, [&](std::string_view name) {
+            return name.find(part) != std::string_view::npos;
+        })) << part;
+}
+
+TEST(Systems, ThatDoNotExistAreRefusedByNameWithThoseThatDo) {
+    test::expect_error(ErrorCode::InvalidOptions, "exact, distance", [] { (void)system_named("octree"); });
+}
+
+TEST(Systems, KeepWithinTheirBudgetAndUseMostOfIt) {
+    const TriangleMesh torus = make_torus(1, 0.4, 30, 12);
+    constexpr std::size_t kBudget = 400'000;
+    for (const SystemType& system : all_systems()) {
+        if (!system.available()) continue;
+        const auto sizes = system.on(torus, few_segments(), {});
+        const Built built = sizes->within(kBudget).build();
+        EXPECT_LE(built->byte_count(), kBudget) << system.name;
+        if (system.has_sizes && system.name != "exact") // whose cells come in few sizes
+            EXPECT_GE(built->byte_count(), kBudget * 8 / 10) << system.name;
+    }
+}
+
+TEST(Systems, BuildTheSameAgain) {
+    const TriangleMesh torus = make_torus(1, 0.4, 20, 10);
+    for (const SystemType& system : all_systems()) {
+        if (!system.available()) continue;
+        const Builder builder = system.on(torus, few_segments(), {})->within(350'000);
+        EXPECT_EQ(builder.build()->byte_count(), builder.build()->byte_count()) << system.name;
+    }
+}
+
+TEST(Systems, RefuseABudgetBelowTheirCoarsestButForThoseWithoutSizes) {
+    const TriangleMesh torus = make_torus(1, 0.4, 20, 10);
+    for (const SystemType& system : all_systems()) {
+        if (!system.available()) continue;
+        const auto sizes = system.on(torus, few_segments(), {});
+        EXPECT_EQ(sizes->usual().has_value(), system.name == "exact");
+        if (!system.has_sizes)
+            EXPECT_GT(sizes->within(15).build()->byte_count(), 15U) << system.name;
+        else
+            test::expect_error(ErrorCode::InvalidOptions, "", [&] { (void)sizes->within(15).build(); });
+    }
+}
+
+namespace {
+
+Figures figures_of(const char* name, std::size_t bytes, double wrong_share) {
+    Figures figures{&system_named(name), bytes, "samples", {}, 12.345, {}};
+    SetFigures near{"S", {7.25, 0, {}}, {123.4, 0, {}}, {}};
+    near.errors.wrong_share = wrong_share;
+    near.errors.depth = {100, 0.000'000'1, 0.01, 0.5};
+    figures.sets.push_back(near);
+    return figures;
+}
+
+Comparison small_comparison() {
+    return {720, 1.4, {"U", "S"}, {figures_of("dense", 630'000, 0.0329)}, {}, false, {}};
+}
+
+std::string row(const std::vector<Column>& columns, const Figures& figures) {
+    std::string text;
+    for (const Column& column : columns) text += column.head + ' ' + column.cell(figures) + '|';
+    return text;
+}
+
+} // namespace
+
+TEST(Columns, ShowThreeDigitsAndADashWhereNothingWasAskedOrJudged) {
+    const Comparison comparison = small_comparison();
+    EXPECT_EQ(row(time_columns(comparison), comparison.systems[0]), "MB 0.630|ms 12.3|U -|S 7.25|U -|S 123|");
+    EXPECT_EQ(row(error_columns(comparison), comparison.systems[0]),
+              "U -|S 3.29|mean <0.0001|99 % 1.00|worst 50.0|mean -|99 % -|");
+}
+
+TEST(Columns, HaveRemarksOnWhoExceedsTheBudgetAndWhoRefused) {
+    Comparison comparison = small_comparison();
+    EXPECT_TRUE(remarks_on(comparison).empty());
+    comparison.systems[0].excess = "the coarsest has 9";
+    comparison.parts_overlap = true;
+    comparison.refusals.push_back({&system_named("classified"), "too small"});
+    const std::vector<std::string> remarks = remarks_on(comparison);
+    ASSERT_EQ(remarks.size(), 3U);
+    EXPECT_NE(remarks[0].find("dense grid: more bytes than it may take; the coarsest has 9"),
+              std::string::npos);
+    EXPECT_NE(remarks[2].find("Parts of the mesh overlap"), std::string::npos);
+    EXPECT_NE(remarks[1].find("classified grid: left out; too small"), std::string::npos);
 }

@@ -1,7 +1,7 @@
 #include "directions/face_cone.hpp"
 #include "rivals/superquadric_map/decompose.hpp"
-#include "rivals/superquadric_map/sampling.hpp"
 #include "rivals/superquadric_map/segments.hpp"
+#include "rivals/superquadric_map/superquadric.hpp"
 #include "support/expectations.hpp"
 #include "support/meshes.hpp"
 #include "support/random_points.hpp"

@@ -2,8 +2,8 @@
 // the caller.
 
 #include "arrays.hpp"
+#include "compare/turns.hpp"
 #include "console/machine.hpp"
-#include "pinning.hpp"
 #include "rivals/unshipped/unshipped.hpp"
 #include "systems.hpp"
 #include "truth.hpp"
