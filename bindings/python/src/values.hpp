@@ -9,6 +9,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <string>
 #include <tuple>
 
 /// Vectors, poses and numbers of Python as the library takes them.
@@ -23,17 +24,29 @@ inline Vec3d vector_of(const Vector& v) {
     return {v[0], v[1], v[2]};
 }
 /// @throws ValueError
-Vec3d finite_vector_of(const Vector& v, const char* name);
+inline Vec3d finite_vector_of(const Vector& v, const char* name) {
+    if (!is_finite(vector_of(v))) throw py::value_error(std::string(name) + " must be finite");
+    return vector_of(v);
+}
 inline RigidTransform pose_of(const Vector& position, const Quaternion& rotation) {
     return {{rotation[0], rotation[1], rotation[2], rotation[3]}, vector_of(position)};
 }
 
-std::tuple<double, double, double> to_python(const Vec3d& v);
-std::tuple<double, double, double, double> to_python(const Rotation& rotation);
+inline std::tuple<double, double, double> to_python(const Vec3d& v) {
+    return {v.x, v.y, v.z};
+}
+inline std::tuple<double, double, double, double> to_python(const Rotation& rotation) {
+    return {rotation.w, rotation.x, rotation.y, rotation.z};
+}
 
 /// @param what  is counted
 /// @throws IndexError
-std::size_t index_below(std::size_t count, std::int64_t index, const char* what);
+inline std::size_t index_below(std::size_t count, std::int64_t index, const char* what) {
+    if (index < 0 || static_cast<std::size_t>(index) >= count)
+        throw py::index_error("there is no " + std::string(what) + " " + std::to_string(index) +
+                              "; there are " + std::to_string(count));
+    return static_cast<std::size_t>(index);
+}
 
 /// The members of a report, by their names, places in the frame of the file.
 /// @param origin  the mesh's
