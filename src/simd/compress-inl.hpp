@@ -6,12 +6,31 @@
 #define ECHINUS_COMPRESS_INL
 #endif
 
-#include "simd/compress_table.hpp"
 #include "simd/lanes-inl.hpp"
 
+#include <array>
 #include <bit>
 #include <cstddef>
 #include <cstdint>
+
+#ifndef ECHINUS_COMPRESS_TABLE // one for all instruction sets
+#define ECHINUS_COMPRESS_TABLE
+namespace echinus {
+
+/// For up to eight lanes, one bit each: the chosen lanes in their order, then the others.
+inline constexpr auto kCompressTable = [] {
+    std::array<std::array<std::uint8_t, 8>, 256> table{};
+    for (std::size_t bits = 0; bits < table.size(); ++bits) {
+        std::size_t count = 0;
+        for (const std::size_t chosen : {1, 0})
+            for (std::uint8_t lane = 0; lane < 8; ++lane)
+                if ((bits >> lane & 1) == chosen) table[bits][count++] = lane;
+    }
+    return table;
+}();
+
+} // namespace echinus
+#endif
 
 HWY_BEFORE_NAMESPACE();
 namespace echinus::HWY_NAMESPACE {

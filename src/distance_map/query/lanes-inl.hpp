@@ -16,7 +16,7 @@
 #define ECHINUS_DISTANCE_MAP_LANES_INL_HPP
 #endif
 
-#include "simd/rows-inl.hpp"
+#include "simd/lanes-inl.hpp"
 
 #if HWY_TARGET != HWY_SCALAR // whose vectors have one lane
 HWY_BEFORE_NAMESPACE();

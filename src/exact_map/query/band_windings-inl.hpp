@@ -12,7 +12,6 @@
 #include "exact_map/query/ray_crossing.hpp"
 #include "simd/compress-inl.hpp"
 #include "simd/lanes-inl.hpp"
-#include "simd/rows-inl.hpp"
 
 #include <algorithm>
 #include <array>

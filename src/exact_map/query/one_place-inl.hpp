@@ -10,7 +10,7 @@
 #include "exact_map/query/nearest.hpp"
 #include "geometry/whole_numbers.hpp"
 #include "simd/compress-inl.hpp"
-#include "simd/rows-inl.hpp"
+#include "simd/lanes-inl.hpp"
 
 #include <algorithm>
 #include <array>
