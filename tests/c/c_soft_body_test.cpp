@@ -79,19 +79,12 @@ Deformable sheet() {
     return make_cloth(options);
 }
 
-CMesh c_mesh(const TriangleMesh& mesh) {
-    CMesh result;
-    expect_ok(echinus_mesh_create(&mesh.vertices.data()->x, mesh.vertices.size(), 0,
-                                  mesh.faces.data()->data(), mesh.faces.size(), out(result)));
-    return result;
-}
-
 /// The same block over the same ball, in C and in C++.
 struct BodyPair {
     BodyPair() : BodyPair(c_soft_body(), make_soft_body(block(), body_options())) {}
     BodyPair(const CDeformable& c_deformable, Deformable deformable)
         : by_cpp(std::move(deformable), {{.map = ExactMap::build(kBall)}}, {}) {
-        const CMap map = c_map(c_mesh(kBall));
+        const CMap map = c_map(c_mesh_of(kBall));
         echinus_simulation_options options;
         echinus_simulation_options_init(&options, sizeof options);
         options.collision = ECHINUS_COLLISION_SURFACES_AND_SELF;
@@ -321,7 +314,7 @@ class CSoftBodyScenes : public TemporaryFolderTest {
 };
 
 TEST_F(CSoftBodyScenes, AreReadWithTheirFiles) {
-    const CMesh ball = c_mesh(kBall);
+    const CMesh ball = c_mesh_of(kBall);
     CVertexCache cache;
     expect_ok(echinus_vertex_cache_read(path("cache").string().c_str(), ball.get(), 24, out(cache)));
     std::vector<Vec3f> last(kBall.vertices.size());

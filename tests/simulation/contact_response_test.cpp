@@ -12,19 +12,12 @@ using namespace echinus;
 
 namespace {
 
-class Dice {
-  public:
-    float within(float low, float high) { return std::uniform_real_distribution<float>(low, high)(engine_); }
-    Vec3f vector() { return {within(-1, 1), within(-1, 1), within(-1, 1)}; }
-    Vec3f unit_vector() {
-        Vec3f v = vector();
-        while (length(v) < 0.1F) v = vector();
-        return v * (1 / length(v));
-    }
-
-  private:
-    std::mt19937 engine_{20260101};
-};
+/// Calls check(random, number) ten thousand times.
+template <typename Check>
+void at_random(const Check& check) {
+    test::Random random(20260101);
+    for (int i = 0; i < 10'000; ++i) check(random, i);
+}
 
 Vec3f tangential(const Vec3f& motion, const Vec3f& normal) {
     return motion - normal * dot(motion, normal);
@@ -33,27 +26,25 @@ Vec3f tangential(const Vec3f& motion, const Vec3f& normal) {
 } // namespace
 
 TEST(Friction, ShortensTheTangentialMotionByTheGripAndNeverReversesIt) {
-    Dice dice;
-    for (int i = 0; i < 10'000; ++i) {
-        const Vec3f normal = dice.unit_vector();
-        const Vec3f motion = dice.vector();
-        const float grip = dice.within(0, 1.5F);
+    at_random([](test::Random& random, int) {
+        const Vec3f normal = test::unit_vector(random);
+        const Vec3f motion = test::in_cube(random, 1);
+        const float grip = test::uniform(random, 0, 1.5F);
         const Vec3f before = tangential(motion, normal);
         const Vec3f after = tangential(apply_friction(motion, normal, grip), normal);
         EXPECT_NEAR(length(after), std::max(0.0F, length(before) - grip), 1e-6);
         EXPECT_GE(dot(after, before), -1e-6F);
         EXPECT_NEAR(length(cross(after, before)), 0, 1e-6);
-    }
+    });
 }
 
 TEST(Friction, LeavesTheMotionAlongTheNormal) {
-    Dice dice;
-    for (int i = 0; i < 10'000; ++i) {
-        const Vec3f normal = dice.unit_vector();
-        const Vec3f motion = dice.vector();
-        const Vec3f left = apply_friction(motion, normal, dice.within(0, 1.5F));
+    at_random([](test::Random& random, int) {
+        const Vec3f normal = test::unit_vector(random);
+        const Vec3f motion = test::in_cube(random, 1);
+        const Vec3f left = apply_friction(motion, normal, test::uniform(random, 0, 1.5F));
         EXPECT_NEAR(dot(left, normal), dot(motion, normal), 1e-6);
-    }
+    });
 }
 
 TEST(Friction, OfGripZeroChangesNothing) {
@@ -63,17 +54,16 @@ TEST(Friction, OfGripZeroChangesNothing) {
 }
 
 TEST(WantedPush, EndsAtTheThicknessFromTheContactPlane) {
-    Dice dice;
-    for (int i = 0; i < 10'000; ++i) {
+    at_random([](test::Random& random, int i) {
         Contact contact;
-        contact.normal = dice.unit_vector();
-        contact.point = dice.vector();
+        contact.normal = test::unit_vector(random);
+        contact.point = test::in_cube(random, 1);
         contact.inside = i % 2 == 0;
-        const float thickness = dice.within(0, 0.1F);
-        const Vec3f position = dice.vector();
+        const float thickness = test::uniform(random, 0, 0.1F);
+        const Vec3f position = test::in_cube(random, 1);
         const Vec3f pushed = position + wanted_push(position, contact, thickness);
         EXPECT_NEAR(dot(pushed - contact.point, contact.normal), thickness, 1e-6);
-    }
+    });
 }
 
 TEST(WantedPush, OfAParticleOutsideKeepsItOverTheSameSpot) {
@@ -94,25 +84,23 @@ TEST(WantedPush, OfAParticleInsideLeadsToTheMapsPoint) {
 }
 
 TEST(GrantedPush, TakesBackAnApproachInFull) {
-    Dice dice;
-    for (int i = 0; i < 10'000; ++i) {
-        const Vec3f wanted = dice.vector();
-        const Vec3f motion = wanted * -dice.within(1, 3) + cross(wanted, dice.vector());
+    at_random([](test::Random& random, int i) {
+        const Vec3f wanted = test::in_cube(random, 1);
+        const Vec3f motion = wanted * -test::uniform(random, 1, 3) + cross(wanted, test::in_cube(random, 1));
         EXPECT_NEAR(length(granted_push(wanted, motion, i % 2 == 0) - wanted), 0, 1e-5);
-    }
+    });
 }
 
 TEST(GrantedPush, OutsideNeverMakesAParticleLeave) {
-    Dice dice;
-    for (int i = 0; i < 10'000; ++i) {
-        const Vec3f wanted = dice.vector();
-        const Vec3f motion = dice.vector();
+    at_random([](test::Random& random, int) {
+        const Vec3f wanted = test::in_cube(random, 1);
+        const Vec3f motion = test::in_cube(random, 1);
         const Vec3f granted = granted_push(wanted, motion, false);
         const float before = dot(motion, wanted);
         const float after = dot(motion + granted, wanted);
         EXPECT_LE(after, std::max(0.0F, before) + 1e-5F);
         EXPECT_GE(after, before - 1e-5F);
-    }
+    });
 }
 
 TEST(GrantedPush, InsideLeadsAParticleOutThatDoesNotMove) {
@@ -125,21 +113,20 @@ TEST(GrantedPush, InsideLeadsAParticleOutThatDoesNotMove) {
 TEST(Response, NeverReversesTheTangentialMotion) {
     // The push out of a solid may have a part along the contact plane: friction may not turn that round
     // either.
-    Dice dice;
-    for (int i = 0; i < 10'000; ++i) {
+    at_random([](test::Random& random, int i) {
         Contact contact;
-        contact.normal = dice.unit_vector();
-        contact.point = dice.vector() * 0.1F;
+        contact.normal = test::unit_vector(random);
+        contact.point = test::in_cube(random, 1) * 0.1F;
         contact.inside = i % 2 == 0;
-        const Vec3f position = dice.vector() * 0.1F;
-        const Vec3f motion = dice.vector() * 0.1F;
+        const Vec3f position = test::in_cube(random, 1) * 0.1F;
+        const Vec3f motion = test::in_cube(random, 1) * 0.1F;
         const ResponseRules slippery{0.01F, 0};
-        const ResponseRules rough{0.01F, dice.within(0, 2)};
+        const ResponseRules rough{0.01F, test::uniform(random, 0, 2)};
         const Vec3f free = tangential(respond(position, motion, contact, slippery), contact.normal);
         const Vec3f braked = tangential(respond(position, motion, contact, rough), contact.normal);
         EXPECT_GE(dot(free, braked), -1e-7F);
         EXPECT_LE(length(braked), length(free) + 1e-6F);
-    }
+    });
 }
 
 TEST(Response, IsNeededInsideAndNearerThanTheThicknessOnly) {
