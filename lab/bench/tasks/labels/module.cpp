@@ -50,7 +50,8 @@ std::span<float> span_of(Lengths& lengths) {
 }
 
 Subject subject_of(const Vertices& vertices, const Faces& faces, std::string name) {
-    TriangleMesh mesh = python::mesh_of(python::vertex_array(vertices), python::face_array(faces));
+    const auto corners = python::face_array(faces);
+    TriangleMesh mesh = python::mesh_of(python::vertex_array(vertices, corners), corners);
     const double radius = inspect(mesh).bounding_sphere.radius;
     return {std::move(name), std::move(mesh), radius, false, test::Axis::Z};
 }
