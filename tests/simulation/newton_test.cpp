@@ -126,11 +126,7 @@ TEST(Newton, APendulumOfClothKeepsNineTenthsOfItsAmplitudeOverTenSwings) {
 TEST(Newton, FrictionHoldsOnASlopeJustBelowItsAngleAndSlidesJustAbove) {
     const auto crept = [](double degrees, double friction, int frames) {
         const Rotation tilt = Rotation::about({1, 0, 0}, degrees * std::numbers::pi / 180);
-        const Deformable sheet = make_cloth({.column_count = 7,
-                                             .row_count = 7,
-                                             .width = 0.3,
-                                             .height = 0.3,
-                                             .pose = {tilt, tilt.apply({0, 0, 0.503})}});
+        const Deformable sheet = sheet_on_slope(tilt, 0.503);
         SimulationOptions options = newton_contact(0.004);
         options.friction = friction;
         Simulation simulation(sheet, {{.map = ExactMap::build(make_box({4, 4, 1})), .pose = {tilt, {}}}},
@@ -350,11 +346,7 @@ TEST(Newton, ParticlesFallOnEveryKindOfMapAndStayOutside) {
 
 TEST(Newton, ParticlesHoldByFrictionOnAMapThatMovesAndBearTheirWeight) {
     const Rotation tilt = Rotation::about({1, 0, 0}, 20 * std::numbers::pi / 180);
-    const Deformable sheet = make_cloth({.column_count = 7,
-                                         .row_count = 7,
-                                         .width = 0.3,
-                                         .height = 0.3,
-                                         .pose = {tilt, tilt.apply({0, 0, 0.503})}});
+    const Deformable sheet = sheet_on_slope(tilt, 0.503);
     SimulationOptions options = newton();
     options.thickness = 0.004;
     options.friction = 0.5;

@@ -32,23 +32,27 @@ inline void run_to_rest(Simulation& simulation, std::uint32_t frame_limit) {
     EXPECT_TRUE(simulation.at_rest()) << "speed " << simulation.largest_speed();
 }
 
+/// A small cloth of 7 x 7 particles along a slope through the origin, this far above it.
+inline Deformable sheet_on_slope(const Rotation& tilt, double height) {
+    return make_cloth({.column_count = 7,
+                       .row_count = 7,
+                       .width = 0.3,
+                       .height = 0.3,
+                       .pose = {tilt, tilt.apply({0, 0, height})}});
+}
+
 /// How far the middle of a small cloth slides in half a second on a slope of this angle with a friction of
 /// 0.5.
 /// @param box  the map of make_box({2, 2, 1})
 /// @param options  of which thickness and friction are replaced
 inline float slid_down_slope(const ColliderMap& box, double angle_rad, SimulationOptions options = {}) {
     constexpr double kThickness = 0.01;
-    constexpr std::uint32_t kSide = 7;
     const Rotation tilt = Rotation::about({1, 0, 0}, angle_rad);
-    const Deformable sheet = make_cloth({.column_count = kSide,
-                                         .row_count = kSide,
-                                         .width = 0.3,
-                                         .height = 0.3,
-                                         .pose = {tilt, tilt.apply({0, 0, 0.5 + kThickness})}});
+    const Deformable sheet = sheet_on_slope(tilt, 0.5 + kThickness);
     options.thickness = kThickness;
     options.friction = 0.5;
     Simulation simulation(sheet, {{.map = box, .pose = {tilt, {}}}}, options);
-    const std::size_t middle = kSide * kSide / 2;
+    const std::size_t middle = sheet.particle_count() / 2;
     const Vec3f before = simulation.positions()[middle];
     while (simulation.frame() * options.time_step < 0.5) simulation.step();
     return length(simulation.positions()[middle] - before);
