@@ -179,7 +179,7 @@ class App {
     }
 
     #beginCloth(why: 'changed' | 'map' | undefined): void {
-        if (this.#paused && !prefersStillness()) this.#pause(false); // a new cloth falls
+        if (why) this.#letFall();
         this.#figures.forgetCounts();
         this.#main.view.byDepth = this.#settings.colour === 'depth';
         if (why) remark(why === 'map' ? 'The cloth starts again, on the other map.' : startsAgain(this.#particles, this.#cloths));
@@ -273,6 +273,7 @@ class App {
     }
 
     #showModel(model: ModelNews): void {
+        this.#letFall();
         this.#model = model;
         this.#main.model = model;
         this.#modelView.show(model);
@@ -354,6 +355,7 @@ class App {
         this.#stage.halves = [() => this.#showSide(this.#main, other), () => this.#showSide(other, this.#main)];
         byId('halves').hidden = false;
         this.#main.client.tell({ kind: 'restart' });
+        this.#letFall();
     }
 
     #endBeside(): void {
@@ -531,6 +533,10 @@ class App {
         this.#paused = paused;
         byId('pause').textContent = paused ? 'Resume' : 'Pause';
         this.#tell({ kind: 'pause', paused });
+    }
+    /** A new cloth falls; who pauses it after asking for it is heeded. */
+    #letFall(): void {
+        if (this.#paused && !prefersStillness()) this.#pause(false);
     }
     #step(): void {
         this.#pause(true);

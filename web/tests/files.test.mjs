@@ -169,10 +169,10 @@ test('a line of faults shows only faintly through the cloth that hides it', asyn
     };
     await untilFrame(page, 10);
     await holdAbove(page);
-    await turn('ArrowDown', 5);
+    await turn('ArrowDown', 8);
     const beside = await red();
     await picture(page, 'faults_beside');
-    await turn('ArrowUp', 16);
+    await turn('ArrowUp', 19);
     await picture(page, 'faults_hidden');
     const above = await red();
     assert.ok(beside > 20 && above < 0.1 * beside, `${beside} pixels from beside, ${above} from above`);
