@@ -74,9 +74,10 @@ struct Deformable {
     /// [particle_count] Units per second. If empty, all particles are at rest, and a simulation stores that
     /// here.
     std::vector<Vec3f> velocities{};
-    /// [particle_count] 1 / mass; 0 for a pinned particle, which stays in place or moves with its attachment,
-    /// and which no collider pushes. Jakobsen: in any unit, since only ratios matter. Newton takes the masses
-    /// of soft bodies from here, in kg, and those of cloth from its ClothMaterial.
+    /// [particle_count] 1 / mass; 0 for a pinned particle, which stays in place or moves with its attachment.
+    /// Where surfaces collide it yields to what would meet it, and returns. Jakobsen: in any unit, since only
+    /// ratios matter. Newton takes the masses of soft bodies from here, in kg, and those of cloth from its
+    /// ClothMaterial.
     std::vector<float> inverse_masses;
     /// The distance constraints, in the order in which Jakobsen relaxes them. Newton uses only structural
     /// constraints that are not edges of faces: threads.
@@ -364,10 +365,9 @@ struct SimulationProfile {
     /// Where surfaces collide: vertex-face and edge-edge pairs whose distance was measured.
     std::uint64_t measured_pair_count = 0;
     /// Where surfaces collide: unresolved vertex-face and edge-edge pairs, for which no free space was proven
-    /// at the start of a substep, summed over all substeps: a pinned particle was driven through a surface,
-    /// or colliders left no room between them. While it is 0, no faces intersect at the end of a frame,
-    /// except by rounding hundreds of a collider's radii away from the origin, which is not counted
-    /// (docs/limits.md).
+    /// at the start of a substep, summed over all substeps: colliders left no room between them. While it is
+    /// 0, no faces intersect at the end of a frame, except by rounding hundreds of a collider's radii away
+    /// from the origin, which is not counted (docs/limits.md).
     std::uint64_t unresolved_count = 0;
 };
 
@@ -436,7 +436,7 @@ class Simulation {
     /// - It applies to particles. An edge of the model may protrude between them.
     /// - Distance maps and custom maps are not swept. Nothing is guaranteed for them, nor for the exact map
     /// of an open mesh.
-    /// - Pinned and attached particles stay where they are held.
+    /// - Where only particles collide, pinned and attached particles stay where they are held.
     /// - A particle that begins inside is pushed to the nearest surface point, and kept outside from then on.
     /// - A particle that is squeezed between several exact maps returns to its last position free of the
     /// first of them, or else of the next, and counts as lost to the others.

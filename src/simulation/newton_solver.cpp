@@ -57,6 +57,7 @@ NewtonSolver::NewtonSolver(Deformable deformable_in, std::vector<Collider> colli
         for (const std::uint32_t particle : handle.particles) is_held_[particle] = 1;
     for (std::size_t i = 0; i < is_held_.size(); ++i)
         if (is_held_[i] != 0) motion_.velocities[i] = {};
+    led_.load(deformable.positions);
     for (const Attachment& attachment : deformable.attachments)
         held_by_[attachment.particle] = attachment.collider;
     for (std::size_t c = 0; c < colliders.size(); ++c) {
@@ -255,6 +256,7 @@ bool NewtonSolver::step_part(const FramePart& part) {
         colliders = colliders_before_;
         return false;
     }
+    std::swap(led_, led_to_);
     const ScratchVector<Vec3d> velocities_before(motion_.velocities.begin(), motion_.velocities.end(),
                                                  workers_.scratch());
     const ScratchVector<std::uint8_t> nothing_touches(contacts_ ? 0 : places.size(), workers_.scratch());
@@ -293,14 +295,17 @@ void NewtonSolver::find_now() {
 bool NewtonSolver::find_start(const FramePart& part, bool is_least) {
     find_now();
     start_ = now_;
-    attachments_.follow(colliders, deforming_, part.end, start_);
-    handles_.follow(time_of(part.begin), time_of(part.end), start_);
+    led_to_ = led_;
+    attachments_.follow(colliders, deforming_, part.end, led_to_);
+    handles_.follow(time_of(part.begin), time_of(part.end), led_to_);
+    for (std::size_t i = 0; i < motion_.particle_count(); ++i)
+        if (is_held_[i] != 0) start_.set(i, led_to_[i]);
+    const bool is_any_led = start_ != now_;
     if (!contacts_ || !options.surfaces_collide()) return true;
     const Stopwatch stopwatch(profile.collision_seconds);
     const CarryField field(colliders_before_, colliders, is_near_, deformations_, part,
                            threshold::kTouch * thickness_);
-    if (field.is_zero() && !(handles_.longest_displacement(time_of(part.begin), time_of(part.end)) > 0))
-        return true;
+    if (field.is_zero() && !is_any_led) return true;
     field.carry(start_, std::span(is_held_).first(motion_.particle_count()), workers_);
     return contacts_->carry(colliders_before_, colliders, deformations_, part, now_, start_, is_held_,
                             is_least, workers_);
@@ -411,6 +416,8 @@ void NewtonSolver::move_particles(const RigidTransform& motion) {
     const Rotation& turn = motion.rotation;
     for (std::vector<Vec3d>* places : {&motion_.places, &motion_.places_before})
         for (Vec3d& place : *places) place = motion.to_world(place);
+    for (std::size_t i = 0; i < motion_.particle_count(); ++i)
+        led_.set(i, Vec3f(motion.to_world(Vec3d(led_[i]))));
     for (std::vector<Vec3d>* vectors : {&motion_.velocities, &motion_.velocities_before, &gained_})
         for (Vec3d& vector : *vectors) vector = turn.apply(vector);
     if (contacts_) contacts_->turn_own(turn);
@@ -460,6 +467,7 @@ void NewtonSolver::archive(StateArchive& state) {
         state.array(*vectors);
     state.array(motion_.is_smooth);
     state.value(was_part_);
+    state.points(led_);
     rest_.archive(state);
     archive_colliders(state);
     attachments_.archive(state, deforming_);

@@ -64,6 +64,8 @@ class NewtonSolver : public Solver {
     std::vector<std::uint8_t> may_touch_; ///< [particle] 1 for those that may do so in this frame
     std::uint8_t was_part_ = 0;           ///< of a frame, the last step
     std::vector<std::uint32_t> held_by_;  ///< [particle] the collider that it is attached to, or kNoObstacle
+    /// [particle] Where it is held, when a step begins and when it ends: contact may keep it from there.
+    PointArrays led_, led_to_;
     PointArrays now_, start_; ///< where particles are, and where the step begins: what colliders carry is
                               ///< with them
     std::vector<Collider> colliders_before_; ///< where the step began

@@ -10,10 +10,9 @@
 
 namespace echinus {
 
-SafeDisplacements::SafeDisplacements(std::span<ContactSide> sides, Places goals,
-                                     std::span<const std::uint8_t> is_held, std::span<const double> masses,
-                                     float share, const Workers& workers)
-    : sides_(sides), goals_(goals), is_held_(is_held), masses_(masses), share_(share), workers_(workers),
+SafeDisplacements::SafeDisplacements(std::span<ContactSide> sides, Places goals, const PushRules& rules,
+                                     const Workers& workers)
+    : sides_(sides), goals_(goals), rules_(rules), workers_(workers),
       ends_(goals.begin(), goals.end(), workers.scratch()), pushed_(goals.size(), workers.scratch()),
       pushed_by_(goals.size(), kNoObstacle, workers.scratch()),
       enough_(sides.size(), ScratchVector<float>(workers.scratch()), workers.scratch()),
@@ -44,7 +43,7 @@ Places SafeDisplacements::find() {
 }
 
 float SafeDisplacements::room_of(const ContactSide& side, float gap) const {
-    return std::max(std::min(side.room(gap), share_ * gap), 0.0F);
+    return std::max(std::min(side.room(gap), rules_.share * gap), 0.0F);
 }
 
 /// The plane between the parts of a pair that hinders their displacements least: the one that they are
@@ -102,7 +101,7 @@ bool SafeDisplacements::correct(ContactSide& side, ScratchVector<float>& enough)
 }
 
 /// Moves the particles of a pair so that it closes a share of the room along a plane's normal. Two parts
-/// share that displacement, as far as what is held in them lets them.
+/// share that displacement, as far as what is held in them lets them; where it yields, it takes the rest.
 /// @return whether any was moved; else those that are held close the pair
 bool SafeDisplacements::push_apart(ContactSide& side, const Pair& pair, const Plane& plane) {
     const Vec3f& normal = plane.normal;
@@ -116,24 +115,29 @@ bool SafeDisplacements::push_apart(ContactSide& side, const Pair& pair, const Pl
         const float along = dot(normal, side.base[i] - side.safe[i]);
         closing[k] = part == 0 ? -along : along;
         most[part] = std::max(most[part], closing[k]);
-        if (is_held_[i] != 0)
+        if (rules_.is_held[i] != 0)
             held[part] = std::max(held[part], closing[k]);
         else
-            mass[part] += masses_.empty() ? 0 : static_cast<float>(masses_[i]);
+            mass[part] += rules_.masses.empty() ? 0 : static_cast<float>(rules_.masses[i]);
     }
     if (moving < 4) most[1] = held[1] = side.obstacle_closing(pair, normal);
     const float missing = most[0] + most[1] - plane.room * threshold::kPushedTo + side.least_gap / 4;
     const std::array<float, 2> free{most[0] - held[0], most[1] - held[1]};
-    const float of_first = moving < 4 ? 1 : masses_.empty() ? 0.5F : mass[1] / (mass[0] + mass[1]);
+    const float of_first = moving < 4 ? 1 : rules_.masses.empty() ? 0.5F : mass[1] / (mass[0] + mass[1]);
     const float fair = missing * of_first;
     const float first = std::min(std::max(fair, missing - free[1]), free[0]);
-    const std::array<float, 2> push{first, std::min(missing - first, free[1])};
+    std::array<float, 2> push{first, std::min(missing - first, free[1])};
+    if (const float rest = missing - push[0] - push[1]; rules_.yields && rest > 0) {
+        const float of_second = moving < 4 ? 0 : rest / 2;
+        push[0] += rest - of_second;
+        push[1] += of_second;
+    }
     bool is_any_pushed = false;
     for (std::size_t k = 0; k < moving; ++k) {
         const std::size_t part = k < own ? 0 : 1;
         const std::uint32_t i = pair.points[k];
         const float back = closing[k] - (most[part] - push[part]);
-        if (is_held_[i] != 0 || !(back > 0)) continue;
+        if ((rules_.is_held[i] != 0 && !rules_.yields) || !(back > 0)) continue;
         side.base.set(i, side.base[i] + normal * (part == 0 ? back : -back));
         ends_[i] = side.to_world_ahead(side.base[i]);
         pushed_[i] += back;

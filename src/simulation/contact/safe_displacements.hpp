@@ -11,17 +11,22 @@
 
 namespace echinus {
 
+/// How the parts of a pair are pushed apart.
+struct PushRules {
+    std::span<const std::uint8_t> is_held; ///< [particle] 1 for those that go to their goals
+    bool yields = false;                   ///< they do so only where the others of a pair can give way
+    std::span<const double> masses;        ///< [particle] by which parts share a push; none: equally
+    float share = 1;                       ///< of each gap that may be closed
+};
+
 /// Displacements from a safe state, corrected so that no pair closes farther than the plane between its parts
 /// allows. Particles are pushed along normals, pair by pair, just as far as is missing; so they keep their
 /// motion along surfaces and what they have in common with their surroundings.
 class SafeDisplacements {
   public:
     /// @param sides    where pairs are listed; the others outlive this, too
-    /// @param is_held  [particle] 1 for those that nothing pushes
-    /// @param masses   [particle] by which the parts of a pair share a push; none: they share it equally
-    /// @param share    of each gap that may be closed, 0 to 1
-    SafeDisplacements(std::span<ContactSide> sides, Places goals, std::span<const std::uint8_t> is_held,
-                      std::span<const double> masses, float share, const Workers& workers);
+    SafeDisplacements(std::span<ContactSide> sides, Places goals, const PushRules& rules,
+                      const Workers& workers);
 
     /// Corrects what is still to be corrected, for instance when more pairs are listed. Leaves in each side
     /// the pairs measured that are near on the way to the ends.
@@ -53,9 +58,7 @@ class SafeDisplacements {
 
     std::span<ContactSide> sides_;
     Places goals_;
-    std::span<const std::uint8_t> is_held_;
-    std::span<const double> masses_;
-    float share_;
+    const PushRules rules_;
     const Workers& workers_;
     ScratchVector<Vec3d> ends_;
     ScratchVector<float> pushed_; ///< [particle] how far in all

@@ -169,7 +169,12 @@ bool SurfaceContacts::carry(const std::vector<Collider>& before, const std::vect
         }
         side.list(places, workers);
     }
-    const bool is_safe = find_ends(places, {}, threshold::kMostClosedByCarrying, workers);
+    const ScratchVector<std::uint8_t> none_is_held(in_any_case ? is_held.size() : 0, workers.scratch());
+    const PushRules rules{.is_held = in_any_case ? std::span(none_is_held) : is_held,
+                          .yields = true,
+                          .masses = {},
+                          .share = threshold::kMostClosedByCarrying};
+    const bool is_safe = find_ends(places, rules, workers);
     is_carried_ = is_safe || in_any_case;
     for (ContactSide& side : sides_) side.end_deforming(is_carried_);
     if (!is_carried_) return false;
@@ -231,17 +236,14 @@ void SurfaceContacts::begin_step(const std::vector<Collider>& colliders, const P
 
 /// Of displacements to goals the ends as far as the planes between the pairs allow.
 /// @param places  in: the goals. Out: the ends
-/// @param masses  by which parts share a push, or none
-/// @param share   of each gap that may be closed
 /// @return whether nothing meets on the way to the ends, but what is counted as unresolved
-bool SurfaceContacts::find_ends(std::span<Vec3d> places, std::span<const double> masses, float share,
-                                const Workers& workers) {
+bool SurfaceContacts::find_ends(std::span<Vec3d> places, const PushRules& rules, const Workers& workers) {
     const ScratchVector<Vec3d> goals(places.begin(), places.end(), workers.scratch());
-    SafeDisplacements displacements(sides_, goals, is_held_, masses, share, workers);
+    SafeDisplacements displacements(sides_, goals, rules, workers);
     for (int round = 0; round < threshold::kMostListingRounds; ++round) {
         const Places ends = displacements.find();
         unresolved_ = displacements.unresolved_count();
-        for (std::size_t i = 0; i < places.size(); ++i) places[i] = is_held_[i] != 0 ? goals[i] : ends[i];
+        std::copy(ends.begin(), ends.end(), places.begin());
         for (std::size_t i = 0; i < places.size(); ++i)
             if (const std::uint32_t by = displacements.pushed_by()[i]; by != kNoObstacle) stopped_by_[i] = by;
         if (!displacements.has_converged() || meets_what_cannot_yield(displacements)) return false;
@@ -355,7 +357,7 @@ std::size_t SurfaceContacts::go_towards(std::span<Vec3d> places, const StepEnerg
         }
         head_for(goals);
         std::copy(goals.begin(), goals.end(), places.begin());
-        const bool is_safe = find_ends(places, masses_, 1, workers);
+        const bool is_safe = find_ends(places, {.is_held = is_held_, .masses = masses_}, workers);
         const Stopped stopped = mark_stopped(goals, places, is_stopped, workers);
         most_stopped = std::max(most_stopped, stopped.count);
         if (is_safe && most_stopped == 0) break;

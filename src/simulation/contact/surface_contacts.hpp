@@ -51,11 +51,14 @@ class SurfaceContacts {
     /// A collider's vertices stand there, in its body frame.
     void place_obstacle(std::size_t collider, std::span<const Vec3f> vertices);
 
-    /// Where a step begins into which colliders that move carry particles, so that nothing meets on the way.
+    /// Where a step begins into which colliders that move carry particles, and what leads those that are
+    /// held, so that nothing meets on the way. What is held yields where nothing else can.
     /// @param deformations  [collider] in the frame of which the step is a part
     /// @param from  safe
-    /// @param carried  in: where the field of the colliders carries each particle. Out: where it begins
-    /// @param in_any_case  carries them even where something meets then, which is counted
+    /// @param carried  in: where the field of the colliders carries each particle, or its hold leads it. Out:
+    /// where it begins
+    /// @param in_any_case  carries them even where something meets then, which is counted. What is held
+    /// yields like all others
     /// @return whether they were carried; else nothing has changed
     bool carry(const std::vector<Collider>& before, const std::vector<Collider>& after,
                std::span<const Deformation> deformations, const FramePart& part, const PointArrays& from,
@@ -128,8 +131,7 @@ class SurfaceContacts {
   private:
     void set_safe(const PointArrays& places);
     Vec3d slip_start(const ContactSide& side, const Pair& pair, const std::array<double, 4>& shares) const;
-    bool find_ends(std::span<Vec3d> places, std::span<const double> masses, float share,
-                   const Workers& workers);
+    bool find_ends(std::span<Vec3d> places, const PushRules& rules, const Workers& workers);
     bool meets_what_cannot_yield(const SafeDisplacements& displacements);
     FreeBody* free_body_of(std::uint32_t collider);
     void head_for(std::span<Vec3d> goals);

@@ -18,7 +18,7 @@ namespace {
 
 constexpr std::array<char, 8> kMagic{'E', 'C', 'H', 'S', 'T', 'A', 'T', 'E'};
 /// To be raised with every change of what is archived, or of what follows from it.
-constexpr std::uint64_t kVersion = 11;
+constexpr std::uint64_t kVersion = 12;
 
 /// Plain numbers without padding, in the order of the machine's bytes.
 struct Header {
