@@ -142,7 +142,7 @@ struct ContactArrays {
     std::span<Vec3<T>> points{};
     std::span<Vec3f> normals{};
     std::span<float> depths{};
-    std::span<std::int32_t> faces{};
+    std::span<std::uint32_t> faces{};
     std::span<std::uint8_t> inside{};     ///< 1 inside, 0 outside within the margin
     std::span<std::uint32_t> colliders{}; ///< the index of the contact's collider
 };

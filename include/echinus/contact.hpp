@@ -21,16 +21,14 @@ enum class Feature : std::uint8_t {
 /// is the same for every kind of map.
 ///
 /// The push-out moves the particle to `point`. For a particle that is outside beyond the margin, or not
-/// finite, the members keep their defaults (not inside, depth 0, normal 0, face -1), and `point` is the
+/// finite, the members keep their defaults (not inside, depth 0, normal 0, no face), and `point` is the
 /// particle itself. With NaN and an exact map, `certain` is false.
 struct Contact {
-    static constexpr std::int32_t kUnknownFace = -1;
-
     Vec3f point;   ///< the point of the surface to which the push-out leads, in the frame of the query
     Vec3f normal;  ///< outward unit normal of the surface at `point`; 0 without a contact
     float depth{}; ///< distance from the particle to `point`: positive inside, negative outside, 0 without
                    ///< a contact
-    std::int32_t face = kUnknownFace; ///< the face of the mesh that contains `point`, if the map knows it
+    std::uint32_t face = kNoIndex; ///< the face of the mesh that contains `point`, if the map knows it
     bool inside = false;
     /// False where the mesh is open and the generalised winding number is near one half, so that `inside`
     /// depends on how the holes would be closed (kCertainMargin in exact_map.hpp). It is always true with a

@@ -250,10 +250,10 @@ struct SweepHit {
     /// Outward unit normal of the face; 0 without a crossing. If both sides of the face are solid, or neither
     /// is, it points out of the face's front.
     Vec3f normal;
-    std::int32_t face = Contact::kUnknownFace; ///< its index in the mesh
-    bool entering = false;                     ///< the crossing leads into the solid
+    std::uint32_t face = kNoIndex; ///< its index in the mesh
+    bool entering = false;         ///< the crossing leads into the solid
 
-    bool found() const { return face != Contact::kUnknownFace; }
+    bool found() const { return face != kNoIndex; }
 };
 
 /// The first crossing of a segment with the surface. The test for crossed faces is exact on the lattice.

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <concepts>
 #include <cstddef>
+#include <cstdint>
 #include <type_traits>
 
 ECHINUS_EXPORT_BEGIN
@@ -12,6 +13,10 @@ ECHINUS_EXPORT_BEGIN
 /// Points, spheres, poses and strided views: the value types that all other headers use.
 /// Frames are right-handed. Lengths are in the caller's unit.
 namespace echinus {
+
+/// In place of the index of a face, a particle or a collider: there is none, or it is not known. All indices
+/// in arrays and results are std::uint32_t.
+inline constexpr std::uint32_t kNoIndex = 0xFFFFFFFF;
 
 template <typename T>
 struct Vec3 {

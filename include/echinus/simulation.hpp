@@ -327,17 +327,14 @@ struct Load {
 /// A contact that pushed in the last frame, between a particle, edge or face of the deformable and a
 /// collider, or between two elements of the deformable.
 struct ContactPoint {
-    /// In place of the number of a collider or of a particle.
-    static constexpr std::uint32_t kNone = 0xFFFFFFFF;
-
     Vec3d position;         ///< on the deformable, when it pushed last in the frame; world coordinates
     Vec3d normal;           ///< unit, towards the deformable; towards its first part where both are its own
     double gap;             ///< when it pushed last; positive
     double normal_impulse;  ///< on the deformable (its first part) along the normal in the frame, N s
     Vec3d friction_impulse; ///< the same across the normal, N s
-    std::uint32_t collider; ///< kNone: the contact is of the deformable with itself
+    std::uint32_t collider; ///< kNoIndex: the contact is of the deformable with itself
     /// The particles of the first element, followed by those of the second one in self-collision: a vertex
-    /// and the three of a face, or two and two of edges. Unused entries are kNone.
+    /// and the three of a face, or two and two of edges. Unused entries are kNoIndex.
     std::array<std::uint32_t, 4> particles;
 };
 

@@ -40,9 +40,9 @@ struct Clearance {
     /// only by rounding: by 1e-6 of the sum of the distance and the coordinates' extent. It is 0 if they
     /// intersect.
     float distance = std::numeric_limits<float>::infinity();
-    std::int32_t face = -1; ///< the face at this distance; -1 if none is within `farthest`
+    std::uint32_t face = kNoIndex; ///< the face at this distance; kNoIndex if none is within `farthest`
 
-    bool found() const { return face != -1; }
+    bool found() const { return face != kNoIndex; }
 };
 
 /// The clearance of a triangle. The query does not allocate. The cost grows with the logarithm of the number
@@ -57,9 +57,9 @@ struct TriangleSweepHit {
     /// The fraction of the path up to which the triangle does not meet the surface; 1 if it does not meet it
     /// at all.
     float fraction = 1;
-    std::int32_t face = -1; ///< the face that it reaches, or -1
+    std::uint32_t face = kNoIndex; ///< the face that it reaches, or kNoIndex
 
-    bool found() const { return face != -1; }
+    bool found() const { return face != kNoIndex; }
 };
 
 /// Sweeps a triangle whose corners each move along a straight line at the same time. An edge is a triangle

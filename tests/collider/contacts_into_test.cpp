@@ -68,7 +68,7 @@ struct Arrays {
     std::vector<Vec3<T>> points;
     std::vector<Vec3f> normals;
     std::vector<float> depths;
-    std::vector<std::int32_t> faces;
+    std::vector<std::uint32_t> faces;
     std::vector<std::uint8_t> inside;
     std::vector<std::uint32_t> colliders;
 };

@@ -176,7 +176,7 @@ TEST(DistanceMapBatch, HasTheBitsOfSingleParticlesForEachSizeAndStride) {
                         << name << ' ' << size;
                 }
                 ASSERT_EQ(inside.back(), 77);
-                ASSERT_EQ(contacts.back().face, 77);
+                ASSERT_EQ(contacts.back().face, 77U);
             }
         }
     });

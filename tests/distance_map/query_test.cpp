@@ -65,7 +65,7 @@ TEST(DistanceMapQuery, PushesRadiallyOntoTheSurface) {
         ASSERT_NEAR(length(cross(c.point - p, p)), 0, 1e-5F); // along the ray
         ASSERT_GT(dot(c.normal, c.point - p), 0);
         ASSERT_NEAR(length(c.normal), 1, 1e-5F);
-        ASSERT_EQ(c.face, Contact::kUnknownFace);
+        ASSERT_EQ(c.face, kNoIndex);
     }
     EXPECT_GT(checked, 1000);
 }

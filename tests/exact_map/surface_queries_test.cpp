@@ -396,7 +396,7 @@ TEST(FacesWithin, HoldTheFaceOfTheClearance) {
         const Clearance nearest = clearance(map.view(), triangle);
         faces_within_batch(map.view(), triangle, std::vector<Triangle>{{0, 1, 2}},
                            nearest.distance * 1.001F + 1e-6F, lists);
-        ASSERT_TRUE(std::binary_search(lists[0].begin(), lists[0].end(), std::uint32_t(nearest.face))) << i;
+        ASSERT_TRUE(std::binary_search(lists[0].begin(), lists[0].end(), nearest.face)) << i;
         faces_within_batch(map.view(), triangle, std::vector<Triangle>{{0, 1, 2}},
                            std::max(0.0F, nearest.distance * 0.999F - 1e-6F), lists);
         if (nearest.distance > 1e-5F) ASSERT_TRUE(lists[0].empty()) << i;

@@ -197,14 +197,14 @@ void AccuracyJudge::judge_open_side(const Vec3f& point, const Truth& truth, bool
 void AccuracyJudge::judge_contact(const Vec3f& point, const Truth& truth, const Contact& contact,
                                   Score& score) const {
     const Vec3d normal(contact.normal);
-    if (contact.face < 0 || static_cast<std::uint32_t>(contact.face) >= face_count() ||
-        !(std::fabs(length(normal) - 1) <= kUnitLength) || !is_finite(contact.point))
+    if (contact.face >= face_count() || !(std::fabs(length(normal) - 1) <= kUnitLength) ||
+        !is_finite(contact.point))
         return count(score.inconsistent, score, point, "no contact, or its normal has not length one");
     const double depth = static_cast<double>(contact.depth);
     if (!(contact.inside ? depth >= 0 : depth <= 0))
         return count(score.inconsistent, score, point, "the depth has the wrong sign or is not a number");
     const Vec3d to_surface = Vec3d(contact.point) - Vec3d(point);
-    const Corners& face = distances_.face(static_cast<std::uint32_t>(contact.face));
+    const Corners& face = distances_.face(contact.face);
     const double distance_error = std::fabs(std::fabs(depth) - truth.distance) / radius_;
     const double point_error =
         std::max(distance_to(face, Vec3d(contact.point)), std::fabs(length(to_surface) - std::fabs(depth))) /
@@ -254,9 +254,8 @@ Verdicts judge_batch(const AccuracyJudge& judge, std::span<const Vec3f> points,
     std::vector<Answers> answers(defendants.size());
     for (std::size_t d = 0; d < defendants.size(); ++d) defendants[d].ask(points, answers[d]);
     for (std::size_t i = 0; i < points.size(); ++i) {
-        const std::int32_t face = answers.empty() ? 0 : answers.front().contacts[i].face;
-        const bool is_hint = face >= 0 && static_cast<std::uint32_t>(face) < judge.face_count();
-        const Truth truth = judge.truth(points[i], is_hint ? static_cast<std::uint32_t>(face) : 0);
+        const std::uint32_t face = answers.empty() ? 0 : answers.front().contacts[i].face;
+        const Truth truth = judge.truth(points[i], face < judge.face_count() ? face : 0);
         for (std::size_t d = 0; d < defendants.size(); ++d)
             judge.judge(points[i], truth, defendants[d].rule, answers[d].inside[i] != 0,
                         answers[d].contacts[i], verdicts.scores[d]);

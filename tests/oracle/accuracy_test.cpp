@@ -58,10 +58,10 @@ class BoxFormula {
         largest = std::copysign(1, largest);
         return p;
     }
-    std::int32_t face_at(const Vec3d& place) const {
+    std::uint32_t face_at(const Vec3d& place) const {
         const auto face = std::ranges::min_element(
             faces_, {}, [&](const test::Corners& corners) { return test::distance_to(corners, place); });
-        return static_cast<std::int32_t>(face - faces_.begin());
+        return static_cast<std::uint32_t>(face - faces_.begin());
     }
 
     std::vector<test::Corners> faces_;
@@ -122,8 +122,7 @@ TEST(AccuracyJudge, CountsQueriesThatDisagree) {
 }
 
 TEST(AccuracyJudge, CountsMissingContactsAndNormalsThatAreNotANumber) {
-    EXPECT_EQ(score_of_spoilt([](std::uint8_t&, Contact& c) { c.face = Contact::kUnknownFace; }).inconsistent,
-              1U);
+    EXPECT_EQ(score_of_spoilt([](std::uint8_t&, Contact& c) { c.face = kNoIndex; }).inconsistent, 1U);
     EXPECT_EQ(score_of_spoilt([](std::uint8_t&, Contact& c) { c.normal.y = NAN; }).inconsistent, 1U);
     EXPECT_EQ(score_of_spoilt([](std::uint8_t&, Contact& c) { c.depth = NAN; }).inconsistent, 1U);
 }

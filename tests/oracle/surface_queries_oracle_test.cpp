@@ -188,7 +188,7 @@ double distance_to_edge(const NearWay& way, const Vec3d& a, const Vec3d& b) {
 
 /// The first face that the way meets on the map's lattice.
 struct Meeting {
-    std::int32_t face = Contact::kUnknownFace;
+    std::uint32_t face = kNoIndex;
     bool entering = false;
     Vec3d place;
     double steepness = 1; ///< sine of the angle between way and face
@@ -212,7 +212,7 @@ Meeting first_meeting(const ExactMapView& map, const NearWay& way) {
         };
         if (!(share >= 0 && share < first) || !left_of(a, b) || !left_of(b, c) || !left_of(c, a)) continue;
         first = share;
-        meeting.face = static_cast<std::int32_t>(map.face_numbers[face]);
+        meeting.face = map.face_numbers[face];
         meeting.entering = rate < 0;
         meeting.place = place;
         meeting.steepness = std::fabs(rate) / (length(normal) * length(along));

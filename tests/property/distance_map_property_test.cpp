@@ -141,7 +141,7 @@ std::vector<float> entries_of(const DistanceMapView& map, std::uint32_t longitud
 /// long as the depth and leads out of the solid.
 void require_sound(const DistanceMapView& map, const Vec3f& p, float margin, const Contact& c) {
     EXPECT_TRUE(c.inside == contains(map, p));
-    EXPECT_TRUE(c.face == Contact::kUnknownFace);
+    EXPECT_TRUE(c.face == kNoIndex);
     if (!c.found()) {
         EXPECT_TRUE(same(c.point, p));
         EXPECT_TRUE(c.depth == 0 && same(c.normal, {}));

@@ -287,7 +287,7 @@ void check_contact(const Subject& subject, const Vec3f& p, const Contact& found,
     const double radius = subject.radius;
     const double tolerance = kDistanceTolerance * radius + 1e-6 * distance;
     verdict.expect(found.found() && found.certain && found.feature != Feature::Unknown, "no contact at ", p);
-    if (found.face < 0 || static_cast<std::size_t>(found.face) >= subject.mesh.faces.size())
+    if (found.face >= subject.mesh.faces.size())
         return verdict.expect(false, "a contact without a face at ", p);
     const double rounding = 1e-7 * (length(Vec3d(p)) + distance);
     const Vec3d way = Vec3d(found.point) - Vec3d(p);
@@ -295,8 +295,8 @@ void check_contact(const Subject& subject, const Vec3f& p, const Contact& found,
     verdict.expect(std::fabs(length(way) - distance) <= tolerance + rounding, "contact point at ",
                    length(way), " instead of ", distance, " from ", p);
     const ShapeJudge::Corners at{Vec3d(found.point), Vec3d(found.point), Vec3d(found.point)};
-    verdict.expect(subject.judge.distance(at, static_cast<std::size_t>(found.face)) <= tolerance + rounding,
-                   "the contact point of ", p, " is not on its face");
+    verdict.expect(subject.judge.distance(at, found.face) <= tolerance + rounding, "the contact point of ", p,
+                   " is not on its face");
     if (distance > 1e-3 * radius + 100 * rounding)
         verdict.expect(length(Vec3d(found.normal) * double{found.depth} - way) <= 1e-2 * distance,
                        "a normal that does not lead to the contact point from ", p);

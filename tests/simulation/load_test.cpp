@@ -236,7 +236,7 @@ TEST(ContactPoints, BetweenTwoLayersSumToTheWeightOfTheUpperOne) {
     for (int i = 0; i < 30; ++i) {
         simulation.step();
         for (const ContactPoint& point : simulation.contact_points()) {
-            if (point.collider != ContactPoint::kNone) continue;
+            if (point.collider != kNoIndex) continue;
             ASSERT_NE(is_upper(point.particles.front()), is_upper(point.particles.back()));
             const double turn = is_upper(point.particles.front()) ? 1 : -1;
             between += turn * force_of(point, simulation.options().time_step).z / 30;

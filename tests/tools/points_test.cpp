@@ -254,7 +254,8 @@ TEST_F(Points, AreRefusedWhenThereAreMoreThanMemoryShouldHold) {
 }
 
 TEST_F(Points, GetAnswersAsPackedRecords) {
-    const std::vector<Contact> contacts{{{1, 2, 3}, {0, 0, 1}, 0.5F, 7, true}, {{4, 5, 6}, {}, 0, -1, false}};
+    const std::vector<Contact> contacts{{{1, 2, 3}, {0, 0, 1}, 0.5F, 7, true},
+                                        {{4, 5, 6}, {}, 0, kNoIndex, false}};
     const fs::path target = path("answers.npy");
     const auto writer = open_answers(target, TableFormat::Npy, contacts.size(), {});
     writer->write({.contacts = {contacts.data(), 1}});
@@ -278,7 +279,7 @@ TEST_F(Points, GetAnswersAsPackedRecords) {
         EXPECT_EQ(floats[0], contact.depth);
         EXPECT_EQ((Vec3f{floats[1], floats[2], floats[3]}), contact.normal);
         EXPECT_EQ((Vec3f{floats[4], floats[5], floats[6]}), contact.point);
-        std::int32_t face = 0;
+        std::uint32_t face = 0;
         std::memcpy(&face, record + 29, sizeof face);
         EXPECT_EQ(face, contact.face);
         EXPECT_EQ(record[33] != 0, contact.certain);

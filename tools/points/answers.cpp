@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include <cstdint>
 #include <cstring>
 #include <iterator>
 #include <string>
@@ -21,6 +22,11 @@ void in_file(const Vec3f& point, const Vec3d& origin, const Use& use) {
         use(point);
     else
         use(Vec3d(point) + origin);
+}
+
+/// -1: the map does not know the face.
+std::int32_t number_in_file(std::uint32_t face) {
+    return static_cast<std::int32_t>(face);
 }
 
 class NpyAnswers final : public AnswerWriter {
@@ -44,7 +50,7 @@ class NpyAnswers final : public AnswerWriter {
             append(contact.depth);
             append(contact.normal);
             in_file(contact.point, origin_, [&](const auto& point) { append(point); });
-            append(contact.face);
+            append(number_in_file(contact.face));
             append(static_cast<std::uint8_t>(contact.certain));
             if (!answers.signed_distances.empty()) append(answers.signed_distances[i]);
             if (!answers.winding_numbers.empty()) append(answers.winding_numbers[i]);
@@ -88,7 +94,8 @@ class CsvAnswers final : public AnswerWriter {
             in_file(contact.point, origin_, [&](const auto& point) {
                 fmt::format_to(std::back_inserter(lines_), ",{},{},{}", point.x, point.y, point.z);
             });
-            fmt::format_to(std::back_inserter(lines_), ",{},{}", contact.face, contact.certain ? 1 : 0);
+            fmt::format_to(std::back_inserter(lines_), ",{},{}", number_in_file(contact.face),
+                           contact.certain ? 1 : 0);
             for (const std::span<const float> more : {answers.signed_distances, answers.winding_numbers})
                 if (!more.empty()) fmt::format_to(std::back_inserter(lines_), ",{}", more[i]);
             lines_ += '\n';

@@ -107,9 +107,7 @@ py::tuple contact_points(SharedSimulation& shared) {
     py::array_t<double> positions({count, py::ssize_t{3}}), normals({count, py::ssize_t{3}}), gaps(count),
         normal_impulses(count), friction_impulses({count, py::ssize_t{3}});
     py::array_t<std::int64_t> colliders(count), particles({count, py::ssize_t{4}});
-    const auto number = [](std::uint32_t n) {
-        return n == ContactPoint::kNone ? std::int64_t{-1} : std::int64_t{n};
-    };
+    const auto number = [](std::uint32_t n) { return n == kNoIndex ? std::int64_t{-1} : std::int64_t{n}; };
     for (py::ssize_t i = 0; i < count; ++i) {
         const ContactPoint& point = points[static_cast<std::size_t>(i)];
         const auto put = [&](py::array_t<double>& array, const Vec3d& v) {

@@ -38,11 +38,11 @@ export const distanceMapStatistics = { bytes: 28, members: {
     correctedEntries: [16, 'Uint32'], clampedEntries: [20, 'Uint32'], wrongParityShare: [24, 'Float32'],
 } };
 export const contact = { bytes: 36, members: {
-    point: [0, 'Float32', 3], normal: [12, 'Float32', 3], depth: [24, 'Float32'], face: [28, 'Int32'],
+    point: [0, 'Float32', 3], normal: [12, 'Float32', 3], depth: [24, 'Float32'], face: [28, 'Uint32'],
     inside: [32, 'Uint8'], certain: [33, 'Uint8'], feature: [34, 'Uint8'],
 } };
 export const sweepHit = { bytes: 36, members: {
-    fraction: [0, 'Float32'], point: [4, 'Float32', 3], normal: [16, 'Float32', 3], face: [28, 'Int32'],
+    fraction: [0, 'Float32'], point: [4, 'Float32', 3], normal: [16, 'Float32', 3], face: [28, 'Uint32'],
     entering: [32, 'Uint8'],
 } };
 export const pose = { bytes: 56, members: {

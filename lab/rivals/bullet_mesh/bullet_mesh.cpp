@@ -44,7 +44,7 @@ struct DeepestContact : btCollisionWorld::ContactResultCallback {
     const btCollisionObject* mesh;
     btScalar distance = std::numeric_limits<btScalar>::infinity(); ///< of the sphere's surface, negative
     btVector3 place{0, 0, 0};                                      ///< on the mesh
-    int face = Contact::kUnknownFace;
+    std::uint32_t face = kNoIndex;
 
     explicit DeepestContact(const btCollisionObject& mesh_) : mesh(&mesh_) {}
 
@@ -54,7 +54,7 @@ struct DeepestContact : btCollisionWorld::ContactResultCallback {
         distance = found.getDistance();
         const bool mesh_is_first = first->getCollisionObject() == mesh;
         place = mesh_is_first ? found.getPositionWorldOnA() : found.getPositionWorldOnB();
-        face = mesh_is_first ? face_a : face_b;
+        face = static_cast<std::uint32_t>(mesh_is_first ? face_a : face_b);
         return 0;
     }
 };
@@ -182,7 +182,7 @@ void BulletMesh::contacts_batch(std::span<const Vec3f> points, float margin,
         contact.inside = shape_->contains(place);
         if (!contact.inside && !(margin > 0 && is_finite(points[i]))) continue;
         const DeepestContact deepest = (contact.inside ? meeting : near_meeting).deepest_contact(place);
-        if (deepest.face == Contact::kUnknownFace) continue; // beyond the reach
+        if (deepest.face == kNoIndex) continue; // beyond the reach
         const Vec3f on_surface = shape_->from_shape(deepest.place);
         const Vec3f out = contact.inside ? on_surface - points[i] : points[i] - on_surface;
         const float distance = length(out);

@@ -559,7 +559,7 @@ class ContactKernel {
         contact.point = seeker.point + offset * step;
         contact.normal = offset * (sign / distances_[lane]);
         contact.depth = sign * distances_[lane] * step;
-        contact.face = static_cast<std::int32_t>(face);
+        contact.face = face;
         contact.inside = inside;
         contact.feature = static_cast<Feature>(features_[lane]);
     }

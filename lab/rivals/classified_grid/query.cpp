@@ -191,7 +191,7 @@ Contact contact_at(const GridArrays& grid, const Vec3f& point_local, bool inside
     contact.normal = nearest.distance <= kSnapping
                          ? out_of_solid(grid, nearest.point, pseudonormal(grid, nearest))
                          : Vec3f(offset * ((inside ? 1 : -1) / nearest.distance));
-    contact.face = static_cast<std::int32_t>(nearest.face);
+    contact.face = nearest.face;
     contact.feature = nearest.feature;
     return contact;
 }

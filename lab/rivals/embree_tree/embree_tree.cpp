@@ -70,7 +70,7 @@ bool visit_face(RTCPointQueryFunctionArguments* arguments) {
     const float distance = length(p - on_face);
     if (distance >= arguments->query->radius) return false;
     arguments->query->radius = distance;
-    nearest = {on_face, distance, static_cast<std::int32_t>(face)};
+    nearest = {on_face, distance, face};
     return true;
 }
 
@@ -273,20 +273,19 @@ void EmbreeTree::contacts_batch(std::span<const Vec3f> points, float margin,
             const bool is_inside = inside[i] != 0;
             if (!is_inside && !(margin > 0)) continue;
             const auto [on_surface, distance, face] = nearest(point, is_inside ? kInfinity : margin);
-            if (face == Contact::kUnknownFace) continue;
+            if (face == kNoIndex) continue;
             const Vec3f out = is_inside ? on_surface - point : point - on_surface;
             contact.inside = is_inside;
             contact.point = on_surface;
             contact.depth = is_inside ? distance : -distance;
             contact.face = face;
-            contact.normal = distance > 0 ? out * (1 / distance)
-                                          : scene_->surface.normal(static_cast<std::uint32_t>(face));
+            contact.normal = distance > 0 ? out * (1 / distance) : scene_->surface.normal(face);
         }
     }
 }
 
 EmbreeTree::Nearest EmbreeTree::nearest(const Vec3f& point, float farthest) const {
-    NearestSoFar found{scene_->surface, {point, kInfinity, Contact::kUnknownFace}};
+    NearestSoFar found{scene_->surface, {point, kInfinity, kNoIndex}};
     if (!is_finite(point)) return found.nearest;
     RTCPointQuery query{point.x, point.y, point.z, 0, farthest};
     RTCPointQueryContext context;

@@ -60,8 +60,8 @@ class EmbreeTree final : public System {
     struct Nearest {
         Vec3f point;
         float distance;
-        /// The mesh's number; Contact::kUnknownFace for a point that is not finite or not so near.
-        std::int32_t face;
+        /// The mesh's number; kNoIndex for a point that is not finite or not so near.
+        std::uint32_t face;
     };
     /// The nearest point of the surface, from either side, if it is nearer than `farthest`.
     Nearest nearest(const Vec3f& point, float farthest = std::numeric_limits<float>::infinity()) const;

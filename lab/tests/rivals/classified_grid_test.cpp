@@ -153,8 +153,8 @@ TEST(ClassifiedGrid, FindsTheNearestPointOfTheWholeSurface) {
                         ASSERT_NEAR(length(p + Vec3d(c.normal) * double{c.depth} - Vec3d(c.point)), 0,
                                     2 * tolerance)
                             << name << " " << i;
-                        ASSERT_LT(static_cast<std::size_t>(c.face), mesh.faces.size());
-                        const auto& [a, b, d] = mesh.faces[static_cast<std::size_t>(c.face)];
+                        ASSERT_LT(c.face, mesh.faces.size());
+                        const auto& [a, b, d] = mesh.faces[c.face];
                         const TriangleMesh alone{{mesh.vertices[a], mesh.vertices[b], mesh.vertices[d]},
                                                  {{0, 1, 2}}};
                         ASSERT_NEAR(unsigned_distance(alone, Vec3d(c.point)), 0, tolerance) << name;

@@ -373,7 +373,7 @@ class Kernel {
                       offsetof(Contact, depth) == 24 && offsetof(Contact, face) == 28 &&
                       offsetof(Contact, inside) == 32 && offsetof(Contact, certain) == 33 &&
                       offsetof(Contact, feature) == 34);
-        const FloatLanes no_face = hn::BitCast(kFloat, splat_int(Contact::kUnknownFace));
+        const FloatLanes no_face = hn::BitCast(kFloat, splat_int(static_cast<std::int32_t>(kNoIndex)));
         HWY_ALIGN float head[4 * kLanes];
         HWY_ALIGN float body[4 * kLanes];
         hn::StoreInterleaved4(from.point.x, from.point.y, from.point.z, from.normal.x, kFloat, head);

@@ -199,7 +199,7 @@ class ContactLanes {
         contact.point = points_[lane];
         contact.normal = normals_[lane];
         contact.depth = static_cast<float>(depths_[lane]);
-        contact.face = kept_as<std::int32_t>(map_.face_numbers[block.faces[i]]);
+        contact.face = map_.face_numbers[block.faces[i]];
         contact.inside = (block.sides[i] & kInsideBit) != 0;
         contact.certain = (block.sides[i] & kUncertainBit) == 0;
         contact.feature = static_cast<Feature>(static_cast<int>(features_[lane]));

@@ -4,7 +4,6 @@
 #include "exact_map/query/nearest.hpp"
 #include "exact_map/query/sides.hpp"
 #include "exact_map/query/winding.hpp"
-#include "geometry/whole_numbers.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -70,7 +69,7 @@ class ContactSearch {
         contact.point = point_local;
         contact.normal = {};
         contact.depth = 0;
-        contact.face = Contact::kUnknownFace;
+        contact.face = kNoIndex;
         contact.inside = false;
         contact.certain = (side & kUncertainBit) == 0 && !has_nan(point_local);
         contact.feature = Feature::Unknown;
@@ -85,7 +84,7 @@ class ContactSearch {
         const double distance = nearest.distance * unit_ * frame_.step;
         result.depth = static_cast<float>(inside ? distance : -distance);
         result.normal = outward_normal(nearest, place_of(point_local), inside);
-        result.face = kept_as<std::int32_t>(map_.face_numbers[nearest.face]);
+        result.face = map_.face_numbers[nearest.face];
         result.feature = nearest.feature;
         return result;
     }

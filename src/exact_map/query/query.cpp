@@ -125,8 +125,7 @@ void winding_number_batch(const ExactMapView& map, StridedSpan<const Vec3f> poin
 float signed_distance(const ExactMapView& map, Vec3f point_local, Vec3f* gradient) noexcept {
     const Contact contact = find_contact(search_everywhere(map), point_local);
     if (gradient != nullptr) *gradient = contact.normal;
-    return contact.face == Contact::kUnknownFace ? signed_distance_without_contact(point_local)
-                                                 : -contact.depth;
+    return contact.face == kNoIndex ? signed_distance_without_contact(point_local) : -contact.depth;
 }
 
 void signed_distance_batch(const ExactMapView& map, StridedSpan<const Vec3f> points_local,

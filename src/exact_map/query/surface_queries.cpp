@@ -6,7 +6,6 @@
 #include "exact_map/query/triangle_distance.hpp"
 #include "geometry/parallel.hpp"
 #include "geometry/precondition.hpp"
-#include "geometry/whole_numbers.hpp"
 #include "mesh/simplices_meet.hpp"
 #include "simd/dispatch.hpp"
 
@@ -268,10 +267,6 @@ std::optional<FirstFace> first_face(const ExactMapView& map, const MovingTriangl
     return first;
 }
 
-std::int32_t number_of(const ExactMapView& map, std::uint32_t face) {
-    return kept_as<std::int32_t>(map.face_numbers[face]);
-}
-
 /// The lattice point nearest to a place, in floats.
 Vec3f snapped(const Vec3d& place) {
     return Vec3f(Vec3d(std::nearbyint(place.x), std::nearbyint(place.y), std::nearbyint(place.z)));
@@ -322,7 +317,7 @@ Clearance clearance(const ExactMapView& map, const TrianglePoints& triangle_loca
     const auto nearest = nearest_face(map, PlacedTriangle(frame, triangle_local), limit);
     if (!nearest) return {.distance = std::min(farthest, rounded_down(kFarthest * frame.step))};
     const double distance = nearest->distance * frame.step * (1 - 0x1p-50);
-    return {.distance = rounded_down(distance), .face = number_of(map, nearest->face)};
+    return {.distance = rounded_down(distance), .face = map.face_numbers[nearest->face]};
 }
 
 TriangleSweepHit sweep(const ExactMapView& map, const TrianglePoints& from_local,
@@ -352,13 +347,13 @@ TriangleSweepHit sweep(const ExactMapView& map, const TrianglePoints& from_local
         const auto nearest = nearest_face(map, now, std::max(rest, tolerance.reach));
         if (!nearest) return {};
         if (nearest->distance <= tolerance.reach)
-            return {.fraction = rounded_down(fraction), .face = number_of(map, nearest->face)};
+            return {.fraction = rounded_down(fraction), .face = map.face_numbers[nearest->face]};
         if (nearest->distance >= rest) return {};
         fraction += nearest->distance / longest * (1 - 0x1p-40);
     }
     const auto first = first_face(map, moving, fraction, tolerance);
     if (!first) return {};
-    return {.fraction = rounded_down(first->fraction), .face = number_of(map, first->face)};
+    return {.fraction = rounded_down(first->fraction), .face = map.face_numbers[first->face]};
 }
 
 void intersects_batch(const ExactMapView& map, StridedSpan<const TrianglePoints> triangles_local,

@@ -7,7 +7,6 @@
 #include "exact_map/query/winding.hpp"
 #include "geometry/parallel.hpp"
 #include "geometry/precondition.hpp"
-#include "geometry/whole_numbers.hpp"
 
 #include <echinus/exact_map.hpp>
 
@@ -198,7 +197,7 @@ SweepHit sweep(const ExactMapView& map, Vec3f from_local, Vec3f to_local) noexce
     hit.fraction = static_cast<float>(fraction);
     hit.point = Vec3f(frame.to_local(place));
     hit.normal = Vec3f(normal * (1 / length(normal)));
-    hit.face = kept_as<std::int32_t>(map.face_numbers[first->face]);
+    hit.face = map.face_numbers[first->face];
     hit.entering = inside_after && !inside_before;
     return hit;
 }

@@ -69,8 +69,8 @@ Deformation::Deformation(const Collider& before, const DeformingCollider& surfac
                                           std::span(contacts).subspan(begin, end - begin));
                        });
     for (std::uint32_t i = 0; i < point_count; ++i) {
-        if (!contacts[i].found() || contacts[i].face == Contact::kUnknownFace) continue;
-        const Triangle& face = surface.faces()[static_cast<std::size_t>(contacts[i].face)];
+        if (!contacts[i].found() || contacts[i].face == kNoIndex) continue;
+        const Triangle& face = surface.faces()[contacts[i].face];
         near.push_back({i, std::fabs(contacts[i].depth),
                         displacement_at(*motion, face, body.point_to_local(contacts[i].point))});
     }

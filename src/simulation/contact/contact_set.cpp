@@ -76,9 +76,9 @@ void ContactSet::record(const Held& contact, Places places, double push, const V
                        .gap = gap_of(contact, places),
                        .normal_impulse = push * step_,
                        .friction_impulse = friction * -step_,
-                       .collider = is_own ? ContactPoint::kNone : contact.key.obstacle,
+                       .collider = is_own ? kNoIndex : contact.key.obstacle,
                        .particles = {}};
-    point.particles.fill(ContactPoint::kNone);
+    point.particles.fill(kNoIndex);
     std::copy_n(contact.key.points.begin(), is_own ? 4 : first_part, point.particles.begin());
     for (std::size_t k = 0; k < first_part; ++k)
         point.position += places[contact.particles[k]] * contact.weights[k];

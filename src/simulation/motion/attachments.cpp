@@ -55,8 +55,8 @@ void Attachments::hold_on_to_surface(std::size_t collider, const Collider& now,
         if (place.collider != collider) continue;
         const Contact nearest =
             contact(now, Vec3f(now.pose.to_world(place.from_pose)), std::numeric_limits<float>::infinity());
-        if (nearest.face == Contact::kUnknownFace) continue;
-        const Triangle face = surface.faces()[static_cast<std::size_t>(nearest.face)];
+        if (nearest.face == kNoIndex) continue;
+        const Triangle face = surface.faces()[nearest.face];
         std::array<Vec3f, 3> corners;
         for (std::size_t k = 0; k < 3; ++k)
             corners[k] = Vec3f(times(Vec3d(surface.vertices()[face[k]]), now.scale));

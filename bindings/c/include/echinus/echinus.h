@@ -103,6 +103,10 @@ ECHINUS_API const char* echinus_available_instruction_set(size_t number);
 /// Selects another set for the whole process, from the next query on. Any thread may call this.
 ECHINUS_API echinus_status echinus_use_instruction_set(const char* name);
 
+/// In place of the index of a face, a particle or a collider: there is none, or it is not known. All indices
+/// in arrays and results are uint32_t.
+#define ECHINUS_NONE UINT32_MAX
+
 // ---- Arrays ----
 
 /// An array whose length is determined by the library. The function that returns it documents the type of its
@@ -556,12 +560,13 @@ typedef enum echinus_feature {
     ECHINUS_FEATURE_VERTEX = 3
 } echinus_feature;
 
-/// The answer for one particle. Without a contact: point is the particle, depth and normal are 0, face is -1.
+/// The answer for one particle. Without a contact: point is the particle, depth and normal are 0, face is
+/// ECHINUS_NONE.
 typedef struct echinus_contact {
     float point[3];  ///< the target of the push-out
     float normal[3]; ///< outward unit normal
     float depth;     ///< distance to point: positive inside, negative outside
-    int32_t face;    ///< index in the mesh; -1 if it is not known
+    uint32_t face;   ///< index in the mesh; ECHINUS_NONE if it is not known
     uint8_t inside;
     uint8_t certain; ///< 0 where the mesh is open and its winding number is within 0.1 of the threshold
     uint8_t feature; ///< an echinus_feature
@@ -610,7 +615,7 @@ typedef struct echinus_sweep_hit {
     float fraction;   ///< position on the segment; 1 without a crossing
     float point[3];   ///< the crossing; the end of the segment without a crossing
     float normal[3];  ///< outward normal of the face; 0 without a crossing
-    int32_t face;     ///< -1 without a crossing
+    uint32_t face;    ///< ECHINUS_NONE without a crossing
     uint8_t entering; ///< the crossing leads from outside to inside
 } echinus_sweep_hit;
 
@@ -634,7 +639,7 @@ ECHINUS_API echinus_status echinus_map_intersects(const echinus_map* map, const 
 
 typedef struct echinus_clearance {
     float distance; ///< a lower bound of the distance
-    int32_t face;   ///< the face at this distance; -1 if none is within the search distance
+    uint32_t face;  ///< the face at this distance; ECHINUS_NONE if none is within the search distance
 } echinus_clearance;
 
 /// Finds the distance of each triangle from the surface.
@@ -646,7 +651,7 @@ ECHINUS_API echinus_status echinus_map_clearance(const echinus_map* map, const f
 
 typedef struct echinus_triangle_sweep_hit {
     float fraction; ///< fraction of the path up to which the triangle does not meet the surface
-    int32_t face;   ///< the face that it reaches; -1 if it meets none
+    uint32_t face;  ///< the face that it reaches; ECHINUS_NONE if it meets none
 } echinus_triangle_sweep_hit;
 
 /// Sweeps triangles whose corners move along straight lines until they reach the surface. Paths that begin or
@@ -1356,9 +1361,6 @@ ECHINUS_API echinus_status echinus_simulation_load_on(const echinus_simulation* 
 /// @return ECHINUS_INVALID_OPTIONS; then nothing has changed
 ECHINUS_API echinus_status echinus_simulation_set_collider_free(echinus_simulation* simulation, size_t index,
                                                                 double mass);
-
-/// Stands for no collider or no particle.
-#define ECHINUS_NONE UINT32_MAX
 
 /// A contact of the last frame, between a particle, edge or face of the deformable and a
 /// collider, or between two elements of the deformable.
