@@ -55,38 +55,15 @@ struct TreeNode {
 };
 static_assert(sizeof(TreeNode) == 128);
 
-/// The far field of the triangles below each child of the TreeNode with the same index: moments of their area
-/// vectors about a centre, for the winding number of an open surface, in lattice steps, divided by 4 pi. For
-/// a child that does not exist everything except the centre is 0. src/exact_map/build/open_surface.hpp
-/// explains the moments.
-struct WindingNode {
-    static constexpr std::size_t kWidth = TreeNode::kWidth;
-
-    double centre[3][kWidth];
-    double area[3][kWidth];    ///< sum of the area vectors
-    double first[6][kWidth];   ///< coefficients of x^2, y^2, z^2, xy, xz, yz
-    double second[7][kWidth];  ///< of x (x^2 - 3 z^2), y (y^2 - 3 z^2), ... see open_surface.cpp
-    double radius[kWidth];     ///< largest distance of a corner from the centre
-    double spread[kWidth];     ///< integral of the squared distance from the centre
-    double total_area[kWidth]; ///< sum of the areas
-};
-static_assert(sizeof(WindingNode) == 22 * 8 * sizeof(double));
-
-/// Triangles in a tree, for the sum of the solid angles that they subtend at a point.
-struct WindingTree {
-    std::span<const TreeNode> nodes;
-    std::span<const WindingNode> moments; ///< [nodes.size()]
-    IndexArray corners; ///< [3 triangle_count] vertices of each triangle, in the order of the leaves
-
-    std::size_t triangle_count() const { return corners.size() / 3; }
-};
-
 /// A border edge of the surface: `multiplicity` more faces traverse it from a to b than from b to a.
 struct BorderEdge {
     std::uint32_t a, b; ///< vertices
     std::int32_t multiplicity;
 };
 static_assert(sizeof(BorderEdge) == 12);
+
+/// Triangles in a tree, for the winding number of an open surface (src/exact_map/layout.hpp).
+struct WindingTree;
 
 /// A map as plain arrays, wherever they are stored; the argument of all queries. It owns nothing and is cheap
 /// to copy. validate() in src/exact_map checks the invariants of untrusted bytes and of built maps.
@@ -126,28 +103,15 @@ struct ExactMapView {
     IndexArray face_numbers;            ///< [face_count] each face's index in the mesh
     std::span<const TreeNode> nodes;    ///< the first is the root
     std::span<const BorderEdge> border; ///< empty for a closed surface
-    /// The triangles over which queries of an open surface sum: its faces, or caps that close it if these are
-    /// far fewer (src/exact_map/query/winding.cpp). It is empty for a closed surface, and not stored in map
-    /// files, since it follows from the faces.
-    WindingTree winding_tree;
-    bool winding_tree_has_caps = false;
-    /// The surface has a border, and at each border edge two more faces run in one direction than in the
-    /// other, as where neighbours disagree about the outside: the surface has no hole. This flag is not
-    /// stored in map files either.
-    bool neighbours_disagree = false;
+    /// For an open surface; null for a closed one. Map files do not store it, since it follows from the other
+    /// arrays.
+    const WindingTree* winding_tree = nullptr;
     Vec3d origin{}; ///< TriangleMesh::origin: the origin of the local frame. Queries ignore it
 
     std::size_t cell_count() const { return std::size_t{8} * divisions * divisions; }
     std::size_t face_count() const { return face_numbers.size(); }
     /// The size of all arrays that queries read, including mesh and tree.
-    std::size_t byte_count() const {
-        return band_offsets.size_bytes() + outer_limits.size_bytes() + bands.size_bytes() +
-               winding_below.size_bytes() + references.size_bytes() + reference_parts.size_bytes() +
-               vertices.size_bytes() + corners.size_bytes() + face_numbers.size_bytes() + nodes.size_bytes() +
-               border.size_bytes() + winding_tree.moments.size_bytes() +
-               (winding_tree_has_caps ? winding_tree.nodes.size_bytes() + winding_tree.corners.size_bytes()
-                                      : 0);
-    }
+    std::size_t byte_count() const;
 };
 
 } // namespace echinus

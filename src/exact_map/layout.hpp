@@ -7,6 +7,7 @@
 #include <echinus/exact_map.hpp>
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -16,6 +17,38 @@ namespace echinus {
 
 // Cells are numbered in 32 bits, with a sign in vectors, and so are the products that number them.
 static_assert(8 * std::uint64_t{ExactMapOptions::kMaxDivisions} * ExactMapOptions::kMaxDivisions < 1U << 31);
+
+/// The far field of the triangles below each child of the TreeNode with the same index: moments of their area
+/// vectors about a centre, for the winding number of an open surface, in lattice steps, divided by 4 pi. For
+/// a child that does not exist everything except the centre is 0. exact_map/build/open_surface.hpp
+/// explains the moments.
+struct WindingNode {
+    static constexpr std::size_t kWidth = TreeNode::kWidth;
+
+    double centre[3][kWidth];
+    double area[3][kWidth];    ///< sum of the area vectors
+    double first[6][kWidth];   ///< coefficients of x^2, y^2, z^2, xy, xz, yz
+    double second[7][kWidth];  ///< of x (x^2 - 3 z^2), y (y^2 - 3 z^2), ... see open_surface.cpp
+    double radius[kWidth];     ///< largest distance of a corner from the centre
+    double spread[kWidth];     ///< integral of the squared distance from the centre
+    double total_area[kWidth]; ///< sum of the areas
+};
+static_assert(sizeof(WindingNode) == 22 * 8 * sizeof(double));
+
+/// Triangles in a tree, for the sum of the solid angles that they subtend at a point: the triangles over
+/// which queries of an open surface sum. They are its faces, or caps that close it if these are far fewer
+/// (exact_map/query/winding.cpp).
+struct WindingTree {
+    std::span<const TreeNode> nodes;
+    std::span<const WindingNode> moments; ///< [nodes.size()]
+    IndexArray corners; ///< [3 triangle_count] vertices of each triangle, in the order of the leaves
+    bool has_caps = false;
+    /// At each border edge two more faces run in one direction than in the other, as where neighbours
+    /// disagree about the outside: the surface has no hole.
+    bool neighbours_disagree = false;
+
+    std::size_t triangle_count() const { return corners.size() / 3; }
+};
 
 /// Lattice steps of the L1 norm to the units of Band, rounded down.
 inline std::int64_t band_unit_of(std::int64_t l1) {

@@ -80,8 +80,7 @@ struct ExactMapParts {
         all.face_numbers = storage->face_numbers.view();
         all.nodes = storage->nodes;
         all.border = storage->border;
-        all.winding_tree = {}; // made anew
-        all.winding_tree_has_caps = false;
+        all.winding_tree = nullptr; // made anew
         return {all, statistics, source_hash, storage};
     }
 };

@@ -124,7 +124,7 @@ ExactMapView surface_of(const OwnedArrays& arrays) {
     view.face_numbers = arrays.face_numbers.view();
     view.nodes = arrays.nodes;
     view.border = arrays.border;
-    if (!arrays.winding_tree.moments.empty()) arrays.winding_tree.show_in(view);
+    if (!arrays.winding_tree.moments.empty()) view.winding_tree = &arrays.winding_tree.tree;
     return view;
 }
 
@@ -355,9 +355,9 @@ ExactMap ExactMapBuilder::rebuild(std::span<const Vec3f> vertices) {
 ExactMap::ExactMap(const ExactMapView& view, const ExactMapStatistics& statistics, std::uint64_t source_hash,
                    std::shared_ptr<const void> storage)
     : view_(view), statistics_(statistics), source_hash_(source_hash), storage_(std::move(storage)) {
-    if (view_.border.empty() || !view_.winding_tree.moments.empty()) return;
+    if (view_.border.empty() || view_.winding_tree != nullptr) return;
     const auto tree = std::make_shared<const OwnedWindingTree>(make_winding_tree(view_));
-    tree->show_in(view_);
+    view_.winding_tree = &tree->tree;
     winding_tree_ = tree;
 }
 

@@ -1,5 +1,6 @@
 #include "exact_map/build/gap_states.hpp"
 
+#include "exact_map/layout.hpp"
 #include "exact_map/query/winding.hpp"
 #include "geometry/whole_numbers.hpp"
 
@@ -70,7 +71,7 @@ struct GapStates::Region {
 
 GapStates::GapStates(const ExactMapView& surface, const OctahedralCells& cells, int most_halvings)
     : surface_(surface), cells_(cells),
-      max_depth_(surface.neighbours_disagree
+      max_depth_(surface.winding_tree->neighbours_disagree
                      ? kNone // what is certain depends on more than the winding number
                      : affordable_halvings(surface.border.size(), cells.count(), most_halvings)) {
     if (max_depth_ == kNone) return;
@@ -134,9 +135,9 @@ double GapStates::largest_change(const Vec3d& place, double reach) const {
 /// Beyond the lattice there are neither faces nor caps.
 std::optional<double> GapStates::winding_at(const LatticePoint& place, int crossings) const {
     const bool on_lattice = is_on_lattice(Vec3d(place));
-    if (surface_.winding_tree_has_caps && on_lattice) crossings += cap_crossings(surface_, place);
+    if (surface_.winding_tree->has_caps && on_lattice) crossings += cap_crossings(surface_, place);
     return decided_winding_by_tree(surface_, Vec3d(place), on_lattice ? &place : nullptr,
-                                   surface_.winding_tree_has_caps ? crossings : 0,
+                                   surface_.winding_tree->has_caps ? crossings : 0,
                                    {WindingGoal::Turn::AtEveryHalf, kTolerance});
 }
 

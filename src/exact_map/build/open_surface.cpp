@@ -401,23 +401,18 @@ void set_caps(const ExactMapView& map, OwnedWindingTree& result) {
 
 } // namespace
 
-void OwnedWindingTree::show_in(ExactMapView& map) const {
-    map.winding_tree_has_caps = !cap_nodes.empty();
-    map.winding_tree.nodes = map.winding_tree_has_caps ? std::span(cap_nodes) : map.nodes;
-    map.winding_tree.corners = map.winding_tree_has_caps ? IndexArray{{}, cap_corners} : map.corners;
-    map.winding_tree.moments = moments;
-    map.neighbours_disagree = neighbours_disagree;
-}
-
 OwnedWindingTree make_winding_tree(const ExactMapView& map) {
     OwnedWindingTree result;
-    result.neighbours_disagree =
-        std::all_of(map.border.begin(), map.border.end(),
-                    [](const BorderEdge& edge) { return edge.multiplicity == 2 || edge.multiplicity == -2; });
     set_caps(map, result);
-    ExactMapView with_tree = map;
-    result.show_in(with_tree);
-    result.moments = find_winding_nodes(with_tree.winding_tree, map.vertices);
+    WindingTree& tree = result.tree;
+    tree.has_caps = !result.cap_nodes.empty();
+    tree.nodes = tree.has_caps ? std::span(std::as_const(result.cap_nodes)) : map.nodes;
+    tree.corners = tree.has_caps ? IndexArray{{}, result.cap_corners} : map.corners;
+    tree.neighbours_disagree = std::all_of(map.border.begin(), map.border.end(), [](const BorderEdge& edge) {
+        return edge.multiplicity == 2 || edge.multiplicity == -2;
+    });
+    result.moments = find_winding_nodes(tree, map.vertices);
+    tree.moments = result.moments;
     return result;
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "directions/lattice.hpp"
+#include "exact_map/layout.hpp"
 
 #include <echinus/exact_map.hpp>
 #include <echinus/exact_map_view.hpp>
@@ -50,14 +51,19 @@ std::vector<Triangle> cap_border(std::span<const BorderEdge> border,
 std::vector<WindingNode> find_winding_nodes(const WindingTree& tree,
                                             std::span<const Vec3<std::int32_t>> vertices);
 
-/// The memory of ExactMapView::winding_tree, and what else queries of an open surface need.
+/// A winding tree and its memory, which moves with it.
 struct OwnedWindingTree {
+    OwnedWindingTree() = default;
+    OwnedWindingTree(const OwnedWindingTree&) = delete;
+    OwnedWindingTree& operator=(const OwnedWindingTree&) = delete;
+    OwnedWindingTree(OwnedWindingTree&&) noexcept = default;
+    OwnedWindingTree& operator=(OwnedWindingTree&&) noexcept = default;
+    ~OwnedWindingTree() = default;
+
     std::vector<WindingNode> moments;
     std::vector<TreeNode> cap_nodes;        ///< none where the tree is that of the faces
     std::vector<std::uint32_t> cap_corners; ///< [3 cap_count]
-    bool neighbours_disagree = false;       ///< as in ExactMapView
-
-    void show_in(ExactMapView& map) const;
+    WindingTree tree;                       ///< of these arrays, and of the map's
 };
 
 /// Makes the tree of triangles over which queries of an open surface sum: caps of its border if they are far

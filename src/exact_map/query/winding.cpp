@@ -113,7 +113,7 @@ class OutwardRay {
 
 int crossings_of_leaf(const ExactMapView& map, std::uint32_t leaf, const LatticePoint& p) {
     const CrossingFilter filter(p);
-    const IndexArray& corners = map.winding_tree.corners;
+    const IndexArray& corners = map.winding_tree->corners;
     const std::size_t first = leaf * kWidth, last = std::min(first + kWidth, corners.size() / 3);
     int sum = 0;
     for (std::size_t cap = first; cap < last; ++cap) {
@@ -141,7 +141,7 @@ int cap_crossings(const ExactMapView& map, const LatticePoint& p) noexcept {
             sum += crossings_of_leaf(map, child - TreeNode::kLeaf, p);
             continue;
         }
-        const TreeNode& node = map.winding_tree.nodes[child];
+        const TreeNode& node = map.winding_tree->nodes[child];
         const std::array<bool, kWidth> met = ray.meets(node);
         for (std::size_t k = 0; k < kWidth; ++k)
             if (met[k]) waiting[count++] = node.children[k];
@@ -218,7 +218,7 @@ int crossings_beyond(const ExactMapView& map, const LatticePoint& p) {
 
 /// The generalised winding number of an open surface.
 double generalised_winding(const ExactMapView& map, const LatticePoint& p, const WindingGoal& goal) {
-    const int crossings = map.winding_tree_has_caps ? crossings_beyond(map, p) + cap_crossings(map, p) : 0;
+    const int crossings = map.winding_tree->has_caps ? crossings_beyond(map, p) + cap_crossings(map, p) : 0;
     if (const auto winding = decided_winding_by_tree(map, Vec3d(p), &p, crossings, goal)) return *winding;
     return crossings_beyond(map, p) + border_part(map.border, map.vertices, p);
 }
@@ -240,7 +240,7 @@ Winding winding_of(double generalised, WindingGoal::Turn turn) {
 /// if that does not contradict it.
 Winding computed_winding_at(const ExactMapView& map, const LatticePoint& p, WindingGoal::Turn turn) {
     Winding winding = winding_of(generalised_winding(map, p, {turn}), turn);
-    if (map.neighbours_disagree && winding.certain)
+    if (map.winding_tree->neighbours_disagree && winding.certain)
         winding.certain = is_inside(map.rule, winding.number) == (crossings_beyond(map, p) % 2 != 0);
     return winding;
 }

@@ -98,8 +98,8 @@ class TreeSum {
     /// @param kept_error  groups of smaller error are not parted
     TreeSum(const ExactMapView& map, const Vec3d& place, const LatticePoint* on_lattice, int crossings,
             double kept_error)
-        : map_(map), place_(place), on_lattice_(on_lattice), crossings_(crossings),
-          sign_(map.winding_tree_has_caps ? -1 : 1), rounding_(rounding_at(place, on_lattice != nullptr)),
+        : map_(map), tree_(*map.winding_tree), place_(place), on_lattice_(on_lattice), crossings_(crossings),
+          sign_(tree_.has_caps ? -1 : 1), rounding_(rounding_at(place, on_lattice != nullptr)),
           kept_error_(kept_error) {}
 
     WindingSum operator()(const WindingGoal& goal) {
@@ -180,9 +180,9 @@ class TreeSum {
                 add_leaf((next - TreeNode::kLeaf) * static_cast<std::uint32_t>(kWidth));
                 continue;
             }
-            const FarChildren children = seen_from(place_, map_.winding_tree.moments[next]);
+            const FarChildren children = seen_from(place_, tree_.moments[next]);
             for (std::size_t k = 0; k < kWidth; ++k) {
-                const std::uint32_t part = map_.winding_tree.nodes[next].children[k];
+                const std::uint32_t part = tree_.nodes[next].children[k];
                 if (!(children.errors[k] < kTooFarOff) ||
                     !keep({children.values[k], children.errors[k], part}))
                     waiting[count++] = part;
@@ -252,7 +252,7 @@ class TreeSum {
         for (std::uint32_t lane = 0; lane < kWidth; ++lane) {
             const std::size_t face = first + std::min(lane, count - 1);
             for (std::size_t k = 0; k < 3; ++k) {
-                const Vec3<std::int32_t>& v = map_.vertices[map_.winding_tree.corners[3 * face + k]];
+                const Vec3<std::int32_t>& v = map_.vertices[tree_.corners[3 * face + k]];
                 corners[k].x[lane] = v.x - place_.x - nudge.x;
                 corners[k].y[lane] = v.y - place_.y - nudge.y;
                 corners[k].z[lane] = v.z - place_.z - nudge.z;
@@ -280,9 +280,8 @@ class TreeSum {
     }
 
     void add_leaf(std::uint32_t first) {
-        const std::uint32_t count =
-            std::min(static_cast<std::uint32_t>(kWidth),
-                     static_cast<std::uint32_t>(map_.winding_tree.triangle_count()) - first);
+        const std::uint32_t count = std::min(static_cast<std::uint32_t>(kWidth),
+                                             static_cast<std::uint32_t>(tree_.triangle_count()) - first);
         const Leaf leaf = angles_of(first, count, {});
         if (is_certain(leaf)) [[likely]]
             add_angles(leaf, first, count);
@@ -335,7 +334,7 @@ class TreeSum {
     /// exactly; in its plane, by the perturbation. A face without area is seen at no angle from anywhere.
     double half_turn(std::uint32_t face) const {
         const auto corner = [&](std::size_t k) {
-            return LatticePoint(map_.vertices[map_.winding_tree.corners[3 * std::size_t{face} + k]]);
+            return LatticePoint(map_.vertices[tree_.corners[3 * std::size_t{face} + k]]);
         };
         const LatticePoint a = corner(0), normal = cross(corner(1) - a, corner(2) - a);
         if (normal == LatticePoint{}) return 0;
@@ -346,6 +345,7 @@ class TreeSum {
     }
 
     const ExactMapView& map_;
+    const WindingTree& tree_;
     Vec3d place_;
     const LatticePoint* on_lattice_;
     double crossings_;
