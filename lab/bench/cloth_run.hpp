@@ -4,6 +4,7 @@
 #include <echinus/exact_map.hpp>
 #include <echinus_scene/scene.hpp>
 
+#include <algorithm>
 #include <cstddef>
 #include <functional>
 #include <string>
@@ -47,3 +48,19 @@ struct ClothOutcome {
 std::vector<ClothOutcome> run_cloths(const ClothScene& scene, const std::vector<ClothSystem>& systems,
                                      const ClothLimits& limits,
                                      const std::function<void(double)>& report_progress);
+
+/// Simulations take turns of a few frames until all are done, so that other load on the machine slows all
+/// alike.
+/// @param runners  of a class with is_done(), run_frame() and progress()
+template <typename Runner>
+void run_in_turns(std::vector<Runner>& runners, const std::function<void(double)>& report_progress) {
+    constexpr int kTurn = 10; // frames
+    while (!std::ranges::all_of(runners, &Runner::is_done)) {
+        double progress = 1;
+        for (Runner& runner : runners) {
+            for (int i = 0; i < kTurn && !runner.is_done(); ++i) runner.run_frame();
+            progress = std::min(progress, runner.progress());
+        }
+        report_progress(progress);
+    }
+}

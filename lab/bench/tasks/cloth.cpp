@@ -154,8 +154,6 @@ Records measure_cloth(const Setting& setting) {
 
 namespace {
 
-constexpr std::uint32_t kTurn = 10; // frames
-
 /// The maps are compared by what keeps particles out, which all of them can.
 Scene of_particles(Scene scene) {
     scene.simulation.solver = JakobsenOptions{};
@@ -177,8 +175,16 @@ class Runner {
                (system_.only_timed && frame >= limits_.first_timed + limits_.timed_count);
     }
 
-    void run_turn() {
-        for (std::uint32_t i = 0; i < kTurn && !is_done(); ++i) run_frame();
+    void run_frame() {
+        const std::uint32_t frame = simulation_.frame();
+        if (frame == limits_.first_timed) before_ = simulation_.profile();
+        const double start = comparison::thread_seconds();
+        simulation_.step();
+        if (frame >= limits_.first_timed && frame < limits_.first_timed + limits_.timed_count) {
+            timed_.push_back(comparison::thread_seconds() - start);
+            after_ = simulation_.profile();
+        }
+        judge_places();
     }
 
     double progress() const {
@@ -199,18 +205,6 @@ class Runner {
     }
 
   private:
-    void run_frame() {
-        const std::uint32_t frame = simulation_.frame();
-        if (frame == limits_.first_timed) before_ = simulation_.profile();
-        const double start = comparison::thread_seconds();
-        simulation_.step();
-        if (frame >= limits_.first_timed && frame < limits_.first_timed + limits_.timed_count) {
-            timed_.push_back(comparison::thread_seconds() - start);
-            after_ = simulation_.profile();
-        }
-        judge_places();
-    }
-
     void judge_places() {
         const auto& positions = simulation_.deformable().positions;
         contacts_.resize(positions.size());
@@ -247,14 +241,7 @@ std::vector<ClothOutcome> run_cloths(const ClothScene& scene, const std::vector<
     std::vector<Runner> runners;
     runners.reserve(systems.size());
     for (const ClothSystem& system : systems) runners.emplace_back(scene, system, judge, limits);
-    while (!std::ranges::all_of(runners, &Runner::is_done)) {
-        double progress = 1;
-        for (Runner& runner : runners) {
-            runner.run_turn();
-            progress = std::min(progress, runner.progress());
-        }
-        report_progress(progress);
-    }
+    run_in_turns(runners, report_progress);
     std::vector<ClothOutcome> outcomes;
     for (const Runner& runner : runners) outcomes.push_back(runner.outcome());
     return outcomes;

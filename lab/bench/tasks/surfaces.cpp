@@ -1,6 +1,7 @@
 // The task surfaces: the same cloth with contact of its particles only, and of its faces with the model and
 // with each other. Judged exactly, on published positions.
 
+#include "cloth_run.hpp"
 #include "commands/verdict.hpp"
 #include "compare/turns.hpp"
 #include "judges/exact_judge.hpp"
@@ -26,7 +27,6 @@ using namespace echinus;
 
 namespace {
 
-constexpr std::uint32_t kTurn = 10;       // frames
 constexpr std::uint32_t kCgalStride = 10; // of the frames that CGAL judges, too
 
 /// A cloth and its models, ready to be simulated with one contact or another.
@@ -303,8 +303,13 @@ class Runner {
 
     bool is_done() const { return simulation_.at_rest() || simulation_.frame() >= fall_.frame_limit; }
 
-    void run_turn() {
-        for (std::uint32_t i = 0; i < kTurn && !is_done(); ++i) run_frame();
+    void run_frame() {
+        const std::uint64_t truncated_before = simulation_.profile().truncated_count;
+        const double start = comparison::thread_seconds();
+        simulation_.step();
+        frame_ms_.push_back(1e3 * (comparison::thread_seconds() - start));
+        truncated_most_ = std::max(truncated_most_, simulation_.profile().truncated_count - truncated_before);
+        if (is_due(stride_)) judge();
     }
 
     double progress() const {
@@ -350,15 +355,6 @@ class Runner {
         options.newton().collision =
             method.of_faces ? CollisionMode::SurfacesAndSelf : CollisionMode::Particles;
         return options;
-    }
-
-    void run_frame() {
-        const std::uint64_t truncated_before = simulation_.profile().truncated_count;
-        const double start = comparison::thread_seconds();
-        simulation_.step();
-        frame_ms_.push_back(1e3 * (comparison::thread_seconds() - start));
-        truncated_most_ = std::max(truncated_most_, simulation_.profile().truncated_count - truncated_before);
-        if (is_due(stride_)) judge();
     }
 
     bool is_due(std::uint32_t stride) const { return simulation_.frame() % stride == 0 || is_done(); }
@@ -409,21 +405,13 @@ bool has(const Records& records, const Fall& fall) {
     });
 }
 
-/// The methods take turns of a few frames, so that other load on the machine slows all alike.
 void add_fall(const Fall& fall, const Setting& setting, Records& records) {
     if (has(records, fall)) return;
     std::vector<Method> methods{{"faces", true}};
     if (fall.with_particles) methods.insert(methods.begin(), {"particles", false});
     std::vector<Runner> runners;
     for (const Method& method : methods) runners.emplace_back(fall, method);
-    while (!std::ranges::all_of(runners, &Runner::is_done)) {
-        double progress = 1;
-        for (Runner& runner : runners) {
-            runner.run_turn();
-            progress = std::min(progress, runner.progress());
-        }
-        setting.report_progress(fall.name, progress);
-    }
+    run_in_turns(runners, [&](double progress) { setting.report_progress(fall.name, progress); });
     for (std::size_t k = 0; k < methods.size(); ++k) {
         Records::Record record = runners[k].record();
         record["method"] = methods[k].name;
