@@ -97,7 +97,7 @@ struct VertexCache {
 /// they are those of that sample. @pre the cache has a sample
 std::vector<Vec3f> vertices_at(const VertexCache& cache, double seconds);
 
-// These queries behave like those of the map: they are noexcept, allocate nothing (except in a custom map),
+// These queries behave like those of the map: they are noexcept, allocate as those do (and in a custom map),
 // and may run on any number of threads. A point is transformed to the local frame in double and rounded to
 // float there, so a collider may be far from the origin as long as the caller's float positions resolve it. A
 // point that overflows float in the local frame is outside. A point with NaN or infinity is outside and has
@@ -160,8 +160,8 @@ struct ContactArrays {
 /// overlap points_world or each other
 /// @returns the number of contacts, including those for which an array was too short
 ///
-/// Allocates nothing beyond the allocations of the maps' batches. Takes 170 KB of the stack, or 350 KB with a
-/// custom map.
+/// Allocates nothing beyond the allocations of the maps' batches, except that each thread keeps 200 KB of
+/// memory from its first call with a custom map on.
 std::size_t contacts_into(std::span<const Collider> colliders, StridedSpan<const Vec3f> points_world,
                           float margin_world, const ContactArrays<float>& contacts) noexcept;
 std::size_t contacts_into(std::span<const Collider> colliders, StridedSpan<const Vec3d> points_world,

@@ -191,8 +191,8 @@ void winding_number_batch(const ExactMapView& map, StridedSpan<const Vec3f> poin
 Contact contact(const ExactMapView& map, Vec3f point_local, float margin = 0) noexcept;
 
 /// contains() for many points, with vector instructions (instruction_set.hpp). The answers are the same, and
-/// from 8 points on it is up to eight times as fast. It takes 90 KB of the stack; on one thread it does not
-/// allocate.
+/// from 8 points on it is up to eight times as fast. Each thread keeps 90 KB of memory from its first call
+/// on; without that memory the points are processed one by one.
 /// @param points_local  [n]
 /// @param inside        [n] out: 1 inside, 0 outside. Must not overlap points_local
 /// @param thread_count  0: all cores. Used for 32 768 points or more; the answers do not depend on it
@@ -203,9 +203,10 @@ void contains_batch(const ExactMapView& map, StridedSpan<const Vec3f> points_loc
 /// contact() for many points, with the same answers, bit for bit, for any number of points. In small or
 /// scattered batches a point costs as much as in contact() or a little less. Where points are closer together
 /// than the width of a few leaves of the tree, sixteen of them share a search and cost half as much or less.
-/// A point at about the same distance from very many faces costs as much as in contact(). The function takes
-/// 150 KB of the stack. For more than 256 points it temporarily allocates up to 1.1 MB per thread and 1 byte
-/// per point; if that fails, it processes the points one by one, as slowly as contact().
+/// A point at about the same distance from very many faces costs as much as in contact(). Each thread
+/// keeps 100 KB of memory from its first call on. For more than 256 points the function temporarily allocates
+/// up to 1.1 MB per thread and 1 byte per point. If memory does not suffice, it processes the points one by
+/// one, as slowly as contact().
 /// @param points_local  [n]
 /// @param contacts      [n] out. Must not overlap points_local
 /// @pre points_local.size() == contacts.size()
@@ -232,8 +233,8 @@ void contacts_batch(const ExactMapView& map, StridedSpan<const Vec3f> points_loc
 float signed_distance(const ExactMapView& map, Vec3f point_local, Vec3f* gradient = nullptr) noexcept;
 
 /// signed_distance() for many points, with the same answers, bit for bit, at the cost of contacts_batch()
-/// with an infinite margin. It takes 150 KB of the stack. For more than 256 points it temporarily allocates
-/// up to 4.2 MB per thread and 1 byte per point; if that fails, it processes the points one by one.
+/// with an infinite margin. Memory is that of contacts_batch(), but up to 4.2 MB per thread for more than 256
+/// points.
 /// @param points_local  [n]
 /// @param distances     [n] out. Must not overlap points_local
 /// @param gradients     [n] out, or empty if not needed. Must not overlap points_local

@@ -109,8 +109,8 @@ class ParticleCollision {
     ///
     /// The cost is O(n) for each collider that particles may be near, by bounding spheres: about 20 ns for a
     /// particle away from surfaces, and less than 1 us for a particle that moves along them
-    /// (docs/own_solver.md). The function allocates only in the first step, with another number of particles
-    /// and after place_collider().
+    /// (docs/own_solver.md). The function allocates only in the first step, with another number of particles,
+    /// after place_collider(), and in a thread's first batches (docs/conventions.md).
     /// @param seconds  the duration of the step; positive
     /// @return the indices of particles whose positions were corrected, ascending; valid until the next call
     /// @throws Error InvalidOptions for arrays of different sizes, an inverse mass that is negative or not

@@ -393,8 +393,9 @@ class [[gnu::visibility("hidden")]] Solver; // src/simulation/solver.hpp
 /// Copies are independent.
 class Simulation {
   public:
-    /// Prepares a simulation. With Jakobsen it allocates all memory that step() needs. Rotations whose length
-    /// differs from 1 by at most 1e-4, as after rounding to float, are normalised.
+    /// Prepares a simulation. With Jakobsen it allocates all memory that step() needs, except what each
+    /// thread keeps from its first batches on (docs/conventions.md). Rotations whose length differs from 1 by
+    /// at most 1e-4, as after rounding to float, are normalised.
     /// @throws Error InvalidOptions, naming the fault, when an option is out of range, the arrays of the
     /// deformable do not fit together, a constraint or a face refers to a particle that does not exist, a
     /// number is not finite, or a collider has a scale of 0, a rotation that does not have unit length, a
@@ -419,7 +420,8 @@ class Simulation {
     ///
     /// Jakobsen: a frame consists of Verlet integration with drag, the motion of the colliders,
     /// iteration_count relaxations of all distance constraints and all collisions of particles with
-    /// colliders, and finally the proof that no particle passed through an exact map. It allocates nothing.
+    /// colliders, and finally the proof that no particle passed through an exact map. It allocates nothing
+    /// after a thread's first batches.
     ///
     /// A distance map pushes along its rays (docs/paper.md), and a custom map to the points that it returns,
     /// both gently: a particle that is not inside is pushed no farther than it came. An exact map pushes to

@@ -3,12 +3,14 @@
 #include "geometry/box.hpp"
 #include "geometry/parallel.hpp"
 #include "geometry/precondition.hpp"
+#include "geometry/scratch.hpp"
 
 #include <echinus/collider.hpp>
 
 #include <algorithm>
 #include <array>
 #include <optional>
+#include <type_traits>
 #include <variant>
 
 namespace echinus {
@@ -51,11 +53,23 @@ bool may_touch(const Collider& collider, const AlignedBox<double>& points, float
     return !(points.distance(collider.pose.to_world(times(local->centre + origin, s))) > reach);
 }
 
+template <typename T>
+struct OnStack {
+    T object;
+
+    T& operator*() { return object; }
+};
+
+/// The pieces for maps of the user's own are too large for a small stack.
+template <typename T>
+using PieceMemory = std::conditional_t<sizeof(T) <= 10'000, OnStack<T>, OnScratch<T>>;
+
 /// Calls `body(begin, points_local)` for consecutive pieces of a batch.
 template <std::size_t piece_size, typename T, typename Body>
 void for_each_piece(const FrameChange& frame, const StridedSpan<const Vec3<T>>& points_world,
                     const Body& body) {
-    std::array<Vec3f, piece_size> points_local;
+    PieceMemory<std::array<Vec3f, piece_size>> memory;
+    std::array<Vec3f, piece_size>& points_local = *memory;
     for (std::size_t begin = 0; begin < points_world.size(); begin += piece_size) {
         const std::size_t count = std::min(piece_size, points_world.size() - begin);
         for (std::size_t i = 0; i < count; ++i)
@@ -93,7 +107,8 @@ void append_contacts(const Collider& collider, std::size_t number, const Strided
                      float margin, const ContactArrays<T>& contacts, std::size_t& count) {
     const FrameChange frame(collider);
     with_queries(collider, frame, margin, [&]<typename Queries>(const Queries& queries) {
-        std::array<Contact, Queries::kPieceSize> found;
+        PieceMemory<std::array<Contact, Queries::kPieceSize>> memory;
+        std::array<Contact, Queries::kPieceSize>& found = *memory;
         for_each_piece<Queries::kPieceSize>(frame, points, [&](std::size_t begin, auto points_local) {
             queries.ask_contacts(points_local, std::span(found.data(), points_local.size()));
             for (std::size_t i = 0; i < points_local.size(); ++i) {

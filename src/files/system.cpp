@@ -10,6 +10,7 @@
 #include <windows.h>
 #else
 #include <fcntl.h>
+#include <pthread.h>
 #include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -267,6 +268,19 @@ bool has_terminal() {
 
 namespace {
 
+class ThreadEnd {
+  public:
+    explicit ThreadEnd(void (*end)(void*)) : index_(FlsAlloc(end)) {}
+    ThreadEnd(const ThreadEnd&) = delete;
+    ThreadEnd& operator=(const ThreadEnd&) = delete;
+    ~ThreadEnd() { FlsFree(index_); }
+
+    bool set(void* value) const { return FlsSetValue(index_, value) != 0; }
+
+  private:
+    DWORD index_;
+};
+
 /// Never destroyed: threads of the system run it until the process ends.
 std::function<void()>& clean_up_function() {
     static auto& instance = *new std::function<void()>;
@@ -293,6 +307,22 @@ void wait_for_end() {
 #else
 
 namespace {
+
+class ThreadEnd {
+  public:
+    explicit ThreadEnd(void (*end)(void*)) : exists_(pthread_key_create(&key_, end) == 0) {}
+    ThreadEnd(const ThreadEnd&) = delete;
+    ThreadEnd& operator=(const ThreadEnd&) = delete;
+    ~ThreadEnd() { // where a library is unloaded, threads go on
+        if (exists_) pthread_key_delete(key_);
+    }
+
+    bool set(void* value) const { return exists_ && pthread_setspecific(key_, value) == 0; }
+
+  private:
+    pthread_key_t key_{};
+    bool exists_;
+};
 
 /// Where Linux shows the file of an open descriptor.
 std::string path_of_descriptor(int descriptor) {
@@ -457,5 +487,10 @@ void wait_for_end() {
 }
 
 #endif
+
+void give_at_thread_end(void (*end)(void*), void* value) {
+    static const ThreadEnd thread_end(end);
+    if (!thread_end.set(value)) throw std::bad_alloc();
+}
 
 } // namespace echinus::system

@@ -63,6 +63,14 @@ int hold_folder(const std::filesystem::path& path);
 /// Removes the file or folder unless somebody holds it. A file that cannot be removed stays.
 void remove_unless_held(const std::filesystem::path& path) noexcept;
 
+// ---- Threads ----
+
+/// Gives a value to `end` when the calling thread ends, unless it is the one that ends the program. The last
+/// value of a thread counts. (A thread_local object of GCC for Windows is gone before its destructor runs.)
+/// @pre the value is not null, and `end` is always the same
+/// @throws std::bad_alloc
+void give_at_thread_end(void (*end)(void*), void* value);
+
 // ---- The program ----
 
 /// The arguments behind the program's name, in UTF-8. Also prepares standard streams for bytes, and the

@@ -75,8 +75,8 @@ class Arena {
     std::size_t size_ = 0, capacity_ = 0;
 };
 
-/// An array whose elements are not initialised: a kernel's memory on the stack, of which a small call uses
-/// little, and in which default values would be written for nothing.
+/// An array whose elements are not initialised: a kernel's memory, of which a small call uses little, and
+/// in which default values would be written for nothing.
 template <typename T, std::size_t kSize>
 class RawArray {
     static_assert(std::is_trivially_copyable_v<T> && std::is_trivially_destructible_v<T>);

@@ -1,6 +1,9 @@
 #include "geometry/scratch.hpp"
 
+#include "files/system.hpp"
+
 #include <algorithm>
+#include <memory>
 
 namespace echinus {
 
@@ -40,6 +43,26 @@ void Scratch::give_back(void* memory) noexcept {
     }
     header->is_given_back = true;
     for (; last_ != nullptr && last_->is_given_back; last_ = last_->below) used_ -= last_->byte_count;
+}
+
+namespace {
+
+thread_local Scratch* of_thread = nullptr;
+
+void end_of_thread(void* scratch) {
+    of_thread = nullptr;
+    delete static_cast<Scratch*>(scratch);
+}
+
+} // namespace
+
+Scratch& scratch_of_thread() {
+    if (of_thread == nullptr) [[unlikely]] {
+        auto scratch = std::make_unique<Scratch>();
+        system::give_at_thread_end(end_of_thread, scratch.get());
+        of_thread = scratch.release();
+    }
+    return *of_thread;
 }
 
 } // namespace echinus

@@ -67,4 +67,40 @@ struct ScratchAllocator {
 template <typename T>
 using ScratchVector = std::vector<T, ScratchAllocator<T>>;
 
+/// The memory in which batches of the calling thread have what is too large for a small stack. The thread
+/// keeps it until it ends. @throws std::bad_alloc
+Scratch& scratch_of_thread();
+
+/// An object in that memory. Calls may nest, as where a custom map asks another map.
+template <typename T>
+class OnScratch {
+    static_assert(alignof(T) <= Scratch::kAlignment);
+
+  public:
+    /// As by "T object;": members without an initialiser keep any value.
+    OnScratch() : object_(new (memory_.address) T) {}
+    template <typename... Arguments>
+    explicit OnScratch(const Arguments&... arguments) : object_(new (memory_.address) T(arguments...)) {}
+    OnScratch(const OnScratch&) = delete;
+    OnScratch& operator=(const OnScratch&) = delete;
+    ~OnScratch() { object_->~T(); }
+
+    T& operator*() { return *object_; }
+    T* operator->() { return object_; }
+
+  private:
+    struct Memory {
+        Memory() : scratch(scratch_of_thread()), address(scratch.take(sizeof(T))) {}
+        Memory(const Memory&) = delete;
+        Memory& operator=(const Memory&) = delete;
+        ~Memory() { scratch.give_back(address); }
+
+        Scratch& scratch;
+        void* address;
+    };
+
+    Memory memory_;
+    T* object_;
+};
+
 } // namespace echinus

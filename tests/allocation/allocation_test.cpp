@@ -103,6 +103,10 @@ TEST(Step, AllocatesNothingBesideAnyKindOfMap) {
         {.map = std::make_shared<test::AnalyticBall>(0.3F), .pose = {Rotation{}, {0.3, 0.2, -0.5}}}};
     Simulation simulation(sheet, colliders,
                           {.solver = JakobsenOptions{}, .time_step = 1.0 / 240, .thickness = 0.01});
+    // A thread's first batches allocate what it keeps for the others.
+    std::vector<Contact> contacts(sheet.particle_count());
+    for (int i = 0; i < 2; ++i)
+        for (const Collider& collider : colliders) contacts_batch(collider, sheet.positions, 1, contacts);
     const std::size_t before = allocation_count;
     EXPECT_GT(before, 0u);
     for (int i = 0; i < 100; ++i) simulation.step();

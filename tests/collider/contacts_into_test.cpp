@@ -2,6 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#ifndef _WIN32
+#include <pthread.h>
+#endif
+
 #include <array>
 #include <cmath>
 #include <limits>
@@ -213,3 +217,40 @@ TEST(ContactsInto, TakesPointsInPlaceFromVertexStructs) {
     EXPECT_EQ(particles[0], 1U);
     EXPECT_EQ(particles[1], 2U);
 }
+
+// Frames of a sanitizer's build are larger.
+#if !defined(_WIN32) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+
+TEST(ContactsInto, NeedsOnlyASmallStack) {
+    constexpr std::size_t kStack = 64 * 1024;
+    struct Question {
+        std::vector<Collider> colliders = colliders_of_all_kinds();
+        std::vector<Vec3f> points = points_about(colliders[0], 3000);
+        std::vector<std::uint32_t> particles = std::vector<std::uint32_t>(4 * points.size());
+        std::size_t count = 0;
+
+        std::size_t ask() {
+            ContactArrays<float> arrays{particles};
+            return contacts_into(colliders, points, 0.1F, arrays);
+        }
+    } question;
+    TriangleMesh torn = make_torus(1, 0.4, 24, 12);
+    torn.faces.resize(torn.faces.size() - 40);
+    question.colliders.push_back({.map = ExactMap::build(torn)});
+    pthread_attr_t small;
+    ASSERT_EQ(pthread_attr_init(&small), 0);
+    ASSERT_EQ(pthread_attr_setstacksize(&small, kStack), 0);
+    const auto ask = [](void* given) -> void* {
+        auto& asked = *static_cast<Question*>(given);
+        asked.count = asked.ask();
+        return nullptr;
+    };
+    pthread_t thread{};
+    ASSERT_EQ(pthread_create(&thread, &small, ask, &question), 0);
+    ASSERT_EQ(pthread_join(thread, nullptr), 0);
+    pthread_attr_destroy(&small);
+    EXPECT_GT(question.count, 0U);
+    EXPECT_EQ(question.count, question.ask());
+}
+
+#endif

@@ -4,6 +4,7 @@
 #include "exact_map/query/contact_search.hpp"
 #include "exact_map/query/nearest.hpp"
 #include "geometry/arena.hpp"
+#include "geometry/scratch.hpp"
 #include "geometry/spatial_order.hpp"
 
 #include <algorithm>
@@ -313,7 +314,9 @@ void find_with(const ContactSearch& search, const StridedSpan<const Vec3f>& poin
     const std::span<Side> sides = memory.sides;
     find_sides(search.map(), points_local, sides);
     const MortonCurve curve(search.map().centre, search.map().radius);
-    std::array<ContactBlock, 2> blocks; // near the lattice and afar, which are searched in different ways
+    OnScratch<std::array<ContactBlock, 2>>
+        block_memory; // near the lattice and afar, which are searched in different ways
+    std::array<ContactBlock, 2>& blocks = *block_memory;
     std::size_t queued = 0;
     const auto answer_queue = [&] {
         const std::span<KeyedParticle> queue = memory.queue.first(queued);
@@ -349,7 +352,7 @@ void find_with(const ContactSearch& search, const StridedSpan<const Vec3f>& poin
 template <typename Output>
 void find_with(const ContactSearch& search, const StridedSpan<const Vec3f>& points_local,
                const Output& output) {
-    // A solver queries few particles many times: they use the stack only.
+    // A solver queries few particles many times.
     constexpr std::size_t kStackCapacity = 256;
     if (output.size() <= kStackCapacity) {
         std::array<Side, kStackCapacity> sides;

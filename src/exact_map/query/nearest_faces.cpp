@@ -14,6 +14,7 @@
 // After foreach_target.h, which includes this file once for each instruction set.
 #include "exact_map/query/face_lanes-inl.hpp"
 #include "exact_map/query/one_place-inl.hpp"
+#include "geometry/scratch.hpp"
 #include "geometry/whole_numbers.hpp"
 #include "simd/dispatch.hpp"
 
@@ -330,11 +331,9 @@ void find_nearest_faces(const ExactMapView& map, const Vec3d& stretch,
     };
     const bool unstretched = stretch == Vec3d{1, 1, 1};
     if (unstretched && std::all_of(searches.begin(), searches.end(), FacesFromAfar::is_for)) {
-        FacesFromAfar finder(map);
-        find_with(finder);
+        find_with(*OnScratch<FacesFromAfar>(map));
     } else {
-        NearestFaceFinder finder(map, stretch, searches);
-        find_with(finder);
+        find_with(*OnScratch<NearestFaceFinder>(map, stretch, searches));
     }
 }
 

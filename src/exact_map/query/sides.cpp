@@ -5,9 +5,12 @@
 
 #include "exact_map/query/sides.hpp"
 
+#include "geometry/scratch.hpp"
+
 #include <algorithm>
 #include <array>
 #include <cassert>
+#include <new>
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "exact_map/query/sides.cpp"
@@ -114,7 +117,7 @@ class SideFinder {
 
 void find_sides(const ExactMapView& map, const StridedSpan<const Vec3f>& points_local,
                 std::span<Side> sides) {
-    SideFinder(map).find(points_local, sides);
+    OnScratch<SideFinder>(map)->find(points_local, sides);
 }
 
 namespace {
@@ -191,10 +194,14 @@ void find_sides(const ExactMapView& map, const StridedSpan<const Vec3f>& points_
     constexpr std::size_t kMinKernelBatch = 8; // one vector takes as long as so many, a vector for each
     if (!use_kernels())
         find_sides_one_by_one(map, points_local, sides);
-    else if (sides.size() >= kMinKernelBatch)
-        ECHINUS_DISPATCH(find_sides)(map, points_local, sides);
-    else
+    else if (sides.size() < kMinKernelBatch)
         ECHINUS_DISPATCH(find_few_sides)(map, points_local, sides);
+    else
+        try {
+            ECHINUS_DISPATCH(find_sides)(map, points_local, sides);
+        } catch (const std::bad_alloc&) { // the reference needs no memory
+            find_sides_one_by_one(map, points_local, sides);
+        }
 }
 
 } // namespace echinus

@@ -39,7 +39,6 @@ SideAndLeaf find_side(const ExactMapView& map, const LatticeFrame& frame, const 
                       bool leaf_outside) noexcept;
 
 /// side_at() for many particles, by vector instructions.
-/// Cost: takes 90 KB of the stack for 8 particles and more.
 /// @pre points_local.size() == sides.size()
 void find_sides(const ExactMapView& map, const StridedSpan<const Vec3f>& points_local,
                 std::span<Side> sides) noexcept;

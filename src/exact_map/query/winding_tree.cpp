@@ -125,11 +125,15 @@ class TreeSum {
         return far_error_ + angle_error_ + magnitude_ * kRounding + 0x1p-40;
     }
 
-    /// Faces seen from afar.
+    /// Faces seen from afar. All groups together stay small enough for a small stack.
     struct Group {
-        double value, error;
+        double value;
+        float error;         ///< rounded up
         std::uint32_t child; ///< as in TreeNode
     };
+    static_assert(sizeof(Group) == 16);
+
+    static float rounded_up(double error) { return static_cast<float>(error * (1 + 0x1p-23)); }
 
     /// Groups by their errors, up to 2^-n in bin n.
     class Bins {
@@ -162,7 +166,7 @@ class TreeSum {
         const std::optional<Group> worst = bins_.take_worst();
         if (!worst) return false;
         far_value_ -= worst->value;
-        far_error_ -= worst->error;
+        far_error_ -= static_cast<double>(worst->error);
         add(worst->child);
         return true;
     }
@@ -184,7 +188,7 @@ class TreeSum {
             for (std::size_t k = 0; k < kWidth; ++k) {
                 const std::uint32_t part = tree_.nodes[next].children[k];
                 if (!(children.errors[k] < kTooFarOff) ||
-                    !keep({children.values[k], children.errors[k], part}))
+                    !keep({children.values[k], rounded_up(children.errors[k]), part}))
                     waiting[count++] = part;
                 else
                     magnitude_ += children.areas[k] + children.errors[k];
@@ -194,9 +198,10 @@ class TreeSum {
 
     /// Adds a group unless it should be parted, because there is no room to remember it.
     bool keep(const Group& group) {
-        if (group.error > kept_error_ && !bins_.add(group)) return false;
+        const auto error = static_cast<double>(group.error);
+        if (error > kept_error_ && !bins_.add(group)) return false;
         far_value_ += group.value;
-        far_error_ += group.error;
+        far_error_ += error;
         return true;
     }
 
