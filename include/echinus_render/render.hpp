@@ -20,7 +20,7 @@ ECHINUS_EXPORT_BEGIN
 /// Rendering by ray tracing on the processor, without a window or a GPU. It belongs to the library
 /// echinus::render, which needs Embree 3 and libpng. Light and backdrop are fixed: the objects, their colours
 /// and the camera determine the picture.
-namespace echinus {
+namespace echinus::render {
 
 // ---- Objects ----
 
@@ -175,6 +175,6 @@ Image draw_map_figure(const TriangleMesh& model, const DistanceMapView& map, con
 Image draw_map_figure(const TriangleMesh& model, const ExactMapView& map, const View& view,
                       const RenderOptions& options = {});
 
-} // namespace echinus
+} // namespace echinus::render
 
 ECHINUS_EXPORT_END

@@ -9,7 +9,7 @@
 #include <numbers>
 #include <sstream>
 
-namespace echinus {
+namespace echinus::render {
 
 namespace {
 
@@ -122,4 +122,4 @@ Camera camera_for(std::span<const RenderedObject> objects, const View& view, dou
     return camera_for(used_points(objects), view, aspect);
 }
 
-} // namespace echinus
+} // namespace echinus::render

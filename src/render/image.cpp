@@ -10,7 +10,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace echinus {
+namespace echinus::render {
 
 namespace {
 
@@ -94,4 +94,4 @@ void write_png(const std::filesystem::path& path, const Image& image) {
     file.commit();
 }
 
-} // namespace echinus
+} // namespace echinus::render

@@ -6,7 +6,7 @@
 #include <span>
 #include <string>
 
-namespace echinus {
+namespace echinus::render {
 
 /// Linear light (Rec. 709 primaries, as sRGB) of a colour.
 Vec3f to_linear(const Colour& colour);
@@ -41,4 +41,4 @@ struct PageStroke {
 /// are not drawn.
 void draw_strokes(Image& image, std::span<const PageStroke> strokes, double width_px, Colour colour);
 
-} // namespace echinus
+} // namespace echinus::render

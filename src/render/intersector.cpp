@@ -11,7 +11,7 @@
 #include <limits>
 #include <string>
 
-namespace echinus {
+namespace echinus::render {
 
 namespace {
 
@@ -125,4 +125,4 @@ std::uint32_t Intersector::blocked(std::span<const Ray> rays) const noexcept {
     return bits;
 }
 
-} // namespace echinus
+} // namespace echinus::render

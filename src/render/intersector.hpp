@@ -7,7 +7,7 @@
 #include <memory>
 #include <span>
 
-namespace echinus {
+namespace echinus::render {
 
 struct Ray {
     Vec3f origin;
@@ -52,4 +52,4 @@ class Intersector {
     std::unique_ptr<Impl> impl_;
 };
 
-} // namespace echinus
+} // namespace echinus::render

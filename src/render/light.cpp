@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace echinus {
+namespace echinus::render {
 
 namespace {
 
@@ -165,4 +165,4 @@ Vec3f cosine_direction(const Vec3f& normal, const Sample2& sample) {
     return basis.x * disc[0] + basis.y * disc[1] + normal * height;
 }
 
-} // namespace echinus
+} // namespace echinus::render

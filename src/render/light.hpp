@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <vector>
 
-namespace echinus {
+namespace echinus::render {
 
 /// Points of the unit square, in [0, 1)^2.
 using Sample2 = std::array<float, 2>;
@@ -64,4 +64,4 @@ class StudioLight {
 /// radiances along such directions is the light on the surface.
 Vec3f cosine_direction(const Vec3f& normal, const Sample2& sample);
 
-} // namespace echinus
+} // namespace echinus::render

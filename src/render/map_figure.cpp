@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-namespace echinus {
+namespace echinus::render {
 
 namespace {
 
@@ -177,4 +177,4 @@ Image draw_map_figure(const TriangleMesh& model, const ExactMapView& map, const 
                        view, options);
 }
 
-} // namespace echinus
+} // namespace echinus::render

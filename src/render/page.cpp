@@ -11,7 +11,7 @@
 #include <numbers>
 #include <vector>
 
-namespace echinus {
+namespace echinus::render {
 
 // Draws lettering and lines over traced pictures, and arranges several pictures on one page.
 
@@ -348,4 +348,4 @@ Image arrange(std::span<const Image> pictures, std::uint32_t column_count) {
     return page;
 }
 
-} // namespace echinus
+} // namespace echinus::render

@@ -11,7 +11,7 @@
 #include <string>
 #include <utility>
 
-namespace echinus {
+namespace echinus::render {
 
 namespace {
 
@@ -186,4 +186,4 @@ PaintedSurface paint(std::span<const RenderedObject> objects) {
     return surface;
 }
 
-} // namespace echinus
+} // namespace echinus::render

@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-namespace echinus {
+namespace echinus::render {
 
 /// Unit normals at the three corners of a face.
 using CornerNormals = std::array<Vec3f, 3>;
@@ -48,4 +48,4 @@ PaintedSurface paint(std::span<const RenderedObject> objects);
 /// @throws Error InvalidMesh as inspect() does
 std::vector<Vec3f> used_points(std::span<const RenderedObject> objects);
 
-} // namespace echinus
+} // namespace echinus::render

@@ -13,7 +13,7 @@
 #include <cstdint>
 #include <mutex>
 
-namespace echinus {
+namespace echinus::render {
 
 namespace {
 
@@ -366,4 +366,4 @@ Image render(std::span<const RenderedObject> objects, const Camera& camera, cons
     return image;
 }
 
-} // namespace echinus
+} // namespace echinus::render

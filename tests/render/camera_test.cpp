@@ -14,6 +14,7 @@
 #include <vector>
 
 using namespace echinus;
+using namespace echinus::render;
 
 namespace {
 

@@ -9,6 +9,7 @@
 #include <string>
 
 using namespace echinus;
+using namespace echinus::render;
 
 namespace {
 

@@ -16,6 +16,7 @@
 #include <numbers>
 
 using namespace echinus;
+using namespace echinus::render;
 
 namespace {
 
@@ -50,7 +51,8 @@ std::vector<RenderedObject> painted(const TriangleMesh& mesh, Colour colour) {
 /// A picture of the objects from `view`.
 Image picture(const std::vector<RenderedObject>& objects, const RenderOptions& options,
               const View& view = {}) {
-    return render(objects, camera_for(objects, view, double(options.width) / options.height), options);
+    return render::render(objects, camera_for(objects, view, double(options.width) / options.height),
+                          options);
 }
 
 TriangleMesh scaled(TriangleMesh mesh, float factor, const Vec3f& offset = {}) {
@@ -64,7 +66,7 @@ TEST(Picture, ASphereCoversTheAreaOfItsSilhouette) {
     const auto objects = painted(make_sphere(1, 256, 128), kGreen);
     const RenderOptions options = options_of(200, 200, 4);
     const Camera camera = camera_for(objects, View{}, 1);
-    const Image image = render(objects, camera, options);
+    const Image image = render::render(objects, camera, options);
 
     // Seen from distance d, the rim of a unit sphere lies at the angle asin(1 / d) from its middle.
     const double distance = length(camera.position);
@@ -269,7 +271,7 @@ RenderOptions tiny_options() {
 }
 
 void expect_error(ErrorCode code, const std::vector<RenderedObject>& objects, const RenderOptions& options) {
-    test::expect_error(code, "", [&] { render(objects, kCamera, options); });
+    test::expect_error(code, "", [&] { render::render(objects, kCamera, options); });
 }
 
 RenderedObject object_with(const TriangleMesh& mesh) {
@@ -338,7 +340,7 @@ TEST(RenderErrors, PaintThatDoesNotFitTheMesh) {
 TEST(RenderErrors, AnExceptionOfTheProgressCallbackStopsTheWork) {
     RenderOptions options = tiny_options();
     options.progress = [](double) { throw std::runtime_error("enough"); };
-    EXPECT_THROW(render(std::vector{object_with(kBox)}, kCamera, options), std::runtime_error);
+    EXPECT_THROW(render::render(std::vector{object_with(kBox)}, kCamera, options), std::runtime_error);
 }
 
 namespace fs = std::filesystem;

@@ -16,6 +16,7 @@
 #include <memory>
 
 using namespace echinus;
+using namespace echinus::render;
 namespace fs = std::filesystem;
 
 namespace {
@@ -97,8 +98,8 @@ void render_mesh(const MeshPicture& arguments) {
     objects[0].wire_width_px = arguments.wire_width_px;
     ProgressBar bar("drawing");
     const Image image = naming_mesh(arguments.mesh.name(), [&] {
-        return render(objects, camera_for(objects, arguments.view, aspect_of(arguments.options)),
-                      with_progress(arguments.options, bar));
+        return render::render(objects, camera_for(objects, arguments.view, aspect_of(arguments.options)),
+                              with_progress(arguments.options, bar));
     });
     write_picture(arguments, image);
 }
@@ -256,7 +257,7 @@ void render_moment(const SimulationPicture& arguments) {
     const Image image = naming_mesh(arguments.folder.string(), [&] {
         Camera camera = camera_for(objects, view, aspect_of(arguments.options));
         if (arguments.close_up_reach > 0) camera = close_up_camera(arguments, view, camera);
-        return render(objects, camera, with_progress(arguments.options, bar));
+        return render::render(objects, camera, with_progress(arguments.options, bar));
     });
     write_picture(arguments, image);
 }
@@ -300,7 +301,7 @@ Image draw_sheet(const SimulationPicture& arguments) {
     std::vector<Image> pictures;
     for (std::size_t sample : moments) {
         const auto part = with_progress(options, bar, pictures.size(), moments.size());
-        pictures.push_back(render(objects_at(folder, sample), camera, part));
+        pictures.push_back(render::render(objects_at(folder, sample), camera, part));
         draw_label(pictures.back(), label_of(folder, sample));
     }
     return arrange(pictures, kSheetColumns);
