@@ -27,9 +27,8 @@ void add_commands(Program& program) {
 /// For one version only.
 void tell_where_compare_went(int argc, char** argv) {
     if (argc > 1 && std::string_view(argv[1]) == "compare")
-        throw WrongUse(
-            "'compare' is now a program of its own, echinus-compare, which the sources build: cmake --preset "
-            "bench && cmake --build --preset bench --target echinus-compare");
+        throw WrongUse("'compare' is now a separate program, echinus-compare, which is built from source: "
+                       "cmake --preset bench && cmake --build --preset bench --target echinus-compare");
 }
 
 } // namespace

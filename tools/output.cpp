@@ -148,6 +148,6 @@ void require_ending(const fs::path& target, std::initializer_list<std::string_vi
 
 void require_one_result(const fs::path& target, bool json) {
     if (json && target == kStandardStream)
-        throw WrongUse("--json", "cannot be used where the result goes to standard output (-), both print "
-                                 "there");
+        throw WrongUse("--json", "cannot be used where the result goes to standard output (-), since "
+                                 "both are printed there");
 }

@@ -286,7 +286,7 @@ TEST_F(BuildCommand, RefusesAnOpenMeshUnlessTold) {
 
 TEST_F(BuildCommand, MendsTheMeshOnlyWhenTold) {
     write("doubled.obj", doubled_face_text());
-    expect_failure(1, "mend it with --repair", {"build", "doubled.obj", "-o", "map.ech"});
+    expect_failure(1, "fix it with --repair", {"build", "doubled.obj", "-o", "map.ech"});
     const json built = json::parse(expect_success({"build", "doubled.obj", "--repair", "--kind", "distance",
                                                    "--directions", "24x12", "-o", "map.ech", "--json"}));
     EXPECT_EQ(built["repairs"]["duplicate_faces_dropped"], 1);

@@ -104,7 +104,7 @@ TEST_F(InfoCommand, NamesTheFirstFacesAtAHole) {
     EXPECT_EQ(box["first_faces"]["border_edges"].size(), 3u);
     const std::string text = expect_success({"info", "open.obj"});
     EXPECT_NE(text.find("3, at faces"), std::string::npos) << text;
-    EXPECT_NE(text.find("--repair finds nothing to mend"), std::string::npos) << text;
+    EXPECT_NE(text.find("--repair finds nothing to repair"), std::string::npos) << text;
 }
 
 TEST_F(InfoCommand, ForetellsWhatRepairWouldDo) {

@@ -399,11 +399,11 @@ TEST_F(SimulateCommand, NamesAnOpenModelAndTheRepairThatWouldCloseIt) {
     write("doubled.json", scene_on("doubled.obj"));
     expect_failure(1, "open.obj: the mesh is not closed: 3 border edges (at faces",
                    {"simulate", "open.json", "-o", "run"});
-    expect_failure(1, R"(; mend it elsewhere, or with "small_holes" or "sheets" in the scene's "repair")",
+    expect_failure(1, R"(; fix it elsewhere, or with "small_holes" or "sheets" in the scene's "repair")",
                    {"simulate", "open.json", "-o", "run"});
     const std::string remedy =
         R"("repair": ["seams", "duplicate_faces", "doubled_patches", "slivers", "orientation"])";
-    expect_failure(1, "; mend it with " + remedy, {"simulate", "doubled.json", "-o", "run"});
+    expect_failure(1, "; fix it with " + remedy, {"simulate", "doubled.json", "-o", "run"});
     write("doubled.json", scene_on("doubled.obj", ", " + remedy));
     simulate("doubled.json");
 }

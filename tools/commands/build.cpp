@@ -79,7 +79,7 @@ void require_solid(const MeshReport& report, const TriangleMesh& mesh, const Bui
                            "vertices round to one point: move it to the origin");
     if (report.closed && report.signed_volume < 0 && !exact)
         throw Error(ErrorCode::InvalidMesh, name + ": the mesh is inside out: its faces are clockwise seen "
-                                                   "from outside; mend it with --repair");
+                                                   "from outside; fix it with --repair");
     if (report.closed || arguments.allow_open) return;
     throw Error(
         ErrorCode::InvalidMesh,

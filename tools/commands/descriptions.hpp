@@ -53,7 +53,7 @@ std::string text_of(const echinus::Vec3d& point);
 std::string rounding_text(double step);
 
 /// Why a mesh that is not closed cannot be used, and what helps: "the mesh is not closed: 24 edges with more
-/// than two faces (first at faces 382, 383); mend it with --repair", or "...; mend it elsewhere" where
+/// than two faces (first at faces 382, 383); fix it with --repair", or "...; fix it elsewhere" where
 /// repair() would not close it.
 /// @param with       what makes a command repair the mesh, such as "--repair"
 /// @param otherwise  what else helps where repair() does not, or nothing
@@ -63,7 +63,7 @@ std::string refusal_of_open_mesh(const echinus::TriangleMesh& mesh, const echinu
 /// The report of repair(), done or planned, as an object.
 Json to_json(const echinus::RepairReport& report);
 
-/// The same as a phrase: "2 duplicate faces dropped, 1 inside-out component turned", or "nothing to mend".
+/// The same as a phrase: "2 duplicate faces dropped, 1 inside-out component turned", or "nothing to repair".
 std::string to_text(const echinus::RepairReport& report);
 
 /// The repairs that --repair would make, and whether the result is closed.

@@ -32,7 +32,7 @@ void show_map(const InputFile& file, bool json) {
 
 std::string advice(const RepairOutlook& outlook, bool closed_now) {
     if (!outlook.report.changed_anything()) {
-        return closed_now ? "" : "\nThe mesh is not closed, and --repair finds nothing to mend.\n";
+        return closed_now ? "" : "\nThe mesh is not closed, and --repair finds nothing to repair.\n";
     }
     return "\nWith --repair: " + to_text(outlook.report) + "; then the mesh is " +
            (outlook.closed_then ? "" : "not ") + "closed.\n";

@@ -133,7 +133,7 @@ void add_repair(Command mesh) {
         .required();
     add_solid_options(command, arguments->repair);
     command.add_flag("--keep-faults", arguments->keep_faults,
-                     "Do not make the repairs of `echinus build --repair`");
+                     "Skip the repairs that `echinus build --repair` makes");
     arguments->mesh.add_format_option(command);
     command.add_flag("--json", arguments->json, "Print one JSON object");
     command.footer("Example: echinus mesh repair truck.obj --close-holes 32 --drop-inner-faces -o solid.obj");

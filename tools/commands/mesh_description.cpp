@@ -105,7 +105,7 @@ std::string refusal_of_open_mesh(const echinus::TriangleMesh& mesh, const MeshRe
                                  const std::string& with, const std::string& otherwise) {
     return "the mesh is not closed: " + faults_of_edges(report) +
            (report.orientable ? "" : ", and it has one-sided parts, like a Moebius strip") + "; " +
-           (foresee_repair(mesh).closed_then ? "mend it with " + with : "mend it elsewhere" + otherwise);
+           (foresee_repair(mesh).closed_then ? "fix it with " + with : "fix it elsewhere" + otherwise);
 }
 
 Json to_json(const RepairReport& report) {
@@ -140,7 +140,7 @@ std::string to_text(const RepairReport& report) {
     add(report.components_flipped, "inside-out component", "turned");
     add(report.inner_faces_dropped.size(), "inner face", "dropped");
     add(report.sheets_thickened, "sheet", "thickened");
-    return phrases.empty() ? "nothing to mend" : fmt::format("{}", fmt::join(phrases, ", "));
+    return phrases.empty() ? "nothing to repair" : fmt::format("{}", fmt::join(phrases, ", "));
 }
 
 RepairOutlook foresee_repair(const echinus::TriangleMesh& mesh) {

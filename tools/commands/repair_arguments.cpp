@@ -27,8 +27,7 @@ void add_length(Command command, const std::string& name, double& length, const 
         char* end = nullptr;
         length = std::strtod(text.c_str(), &end);
         if (end == text.c_str() || *end != '\0') return false;
-        if (!(length > 0 && std::isfinite(length)))
-            throw WrongUse(name, "must be a finite length and positive");
+        if (!(length > 0 && std::isfinite(length))) throw WrongUse(name, "must be a finite, positive length");
         return true;
     };
     command.add(name, read_length, description).type_name("LENGTH");

@@ -173,7 +173,7 @@ void add_tetrahedralize_command(Command program) {
         .range(1U, 100'000'000U)
         .excludes("--size")
         .type_name("NUMBER");
-    command.add("--most", &arguments->most, "Largest number of tetrahedra; more are refused")
+    command.add("--most", &arguments->most, "Largest number of tetrahedra; more are rejected")
         .range(1U, 100'000'000U)
         .type_name("NUMBER")
         .show_default();

@@ -120,8 +120,8 @@ class Simulation:
         ``jakobsen`` only: relaxations per frame, each of all distance constraints and then of all contacts; more
         relaxations take longer and leave less stretch (1 to 1e6).
     newton_step_count
-        ``newton`` only: the largest number of steps of Newton's method per frame, and twice as many while nothing
-        touches; fewer are taken if it converges (1 to 1000).
+        ``newton`` only: the largest number of steps of Newton's method per frame, and twice as many while there is
+        no contact; fewer are taken if it converges (1 to 1000).
     rest_frame_count
         The number of consecutive frames for which all particles must be slow and near one position (1 to 1e9).
     rest_distance
@@ -132,8 +132,8 @@ class Simulation:
         The acceleration of gravity. A model whose y axis points up needs ``[0, -9.81, 0]`` (-1e9 to 1e9
         length/s^2).
     drag
-        ``jakobsen`` only: share of the velocity that is lost per frame; another ``time_step`` makes another drag (0
-        to 1).
+        ``jakobsen`` only: share of the velocity that is lost per frame; its effect depends on ``time_step`` (0 to
+        1).
     stiffness
         ``jakobsen`` only: share of a constraint's error that one relaxation removes, for structural, shear and
         bending constraints (0 to 1.99).
@@ -154,12 +154,12 @@ class Simulation:
         Accept exact maps of open meshes, for which nothing is guaranteed. The collision of surfaces does not need
         this option.
     collision
-        The parts that collide, with ``jakobsen`` particles only. ``particles``: particles with models;
-        ``surfaces``: edges and faces, too: none of them intersects a model at the end of a frame, within limits;
-        ``surfaces_and_self``: faces do not intersect each other either.
+        The parts that collide; with ``jakobsen`` only particles do. ``particles``: particles collide with models;
+        ``surfaces``: edges and faces do, too, so none of them intersects a model at the end of a frame, within
+        limits; ``surfaces_and_self``: in addition, faces do not intersect each other.
     untangle
-        ``newton`` only: separate a start that intersects, or is inside the model, before the first frame instead of
-        refusing it; needs the collision of surfaces.
+        ``newton`` only: separate an initial state that intersects, or is inside the model, before the first frame
+        instead of rejecting it; needs the collision of surfaces.
     density
         ``newton`` only, like the next four: mass of the cloth per area (1e-6 to 1e6 kg/m^2).
     stretch_stiffness
@@ -606,7 +606,7 @@ def _require_closed(mesh: Mesh, name: str) -> None:
     if not report.closed:
         raise Error(
             f"{name}: the model is not closed, so cloth would pass through it: {report.border_edges.count} edges have"
-            f" one face, {report.misoriented_edges.count} have faces that disagree about the outside; mend it, or use"
+            f" one face, {report.misoriented_edges.count} have faces that disagree about the outside; repair it, or use"
             " the collision of surfaces",
             "invalid_mesh",
         )

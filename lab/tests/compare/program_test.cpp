@@ -90,7 +90,7 @@ TEST_F(CompareProgram, RefusesAnOpenMeshWithTheRemedy) {
     write("open.obj", open_box_text());
     write("doubled.obj", doubled_face_text());
     expect_failure(1, "open.obj: the mesh is not closed", {"open.obj"});
-    expect_failure(1, "mend it with --repair", {"doubled.obj"});
+    expect_failure(1, "fix it with --repair", {"doubled.obj"});
     expect_success({"doubled.obj", "--repair", "--systems", "exact", "--points", "100"});
 }
 

@@ -285,7 +285,7 @@ void require_valid(const Collider& collider, const SimulationOptions& options, c
         !options.allow_open_colliders)
         fail(name + " has the exact map of an open mesh, with " +
              std::to_string(exact->view().border.size()) +
-             " border edges, where particles get in; close the mesh (repair() mends some), use a distance "
+             " border edges, where particles get in; close the mesh (repair() closes some), use a distance "
              "map, " +
              (options.kind() == SolverKind::Newton ? "let surfaces collide, which needs no inside, " : "") +
              "or set allow_open_colliders and lose particles");
