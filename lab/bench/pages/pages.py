@@ -65,7 +65,7 @@ def build(folder):
 
 def cloth(folder):
     results = Results(folder, "cloth")
-    rows = [["collider", "particles", "MB", "ms a frame", "of it constraints, ms", "collision, ms", "frames to rest",
+    rows = [["collider", "particles", "MB", "ms per frame", "of it constraints, ms", "collision, ms", "frames to rest",
              "inside at the end", "deepest at the end, R", "deepest ever, R"]]
     for r in results.records:
         rest = r["frames"] if r["rested"] == "yes" else f"stopped at {r['frames']}"
@@ -91,7 +91,7 @@ def solvers(folder):
             moving.append([problem, f"{one['side']} x {one['side']}", one["stiffness"]]
                           + [strain(found[d]) if d in found else "" for d in designs]
                           + [number(found[d]["frame_ms"]) if d in found else "" for d in designs])
-    rest = [["a sheet", "a frame, s", "strain, %", "away from that of 1/60 s, mm", "fastest particle, mm/s"]]
+    rest = [["a sheet", "a frame, s", "strain, %", "distance from positions with 1/60 s, mm", "fastest particle, mm/s"]]
     for r in results.where(state="at rest"):
         rest.append([r["problem"], f"1/{r['frames_per_second']}", strain(r), number(r["away"], 1000), number(r["speed"], 1000)])
     return {"solvers moving": table(moving), "solvers at rest": table(rest), "solvers machine": results.machine, "solvers commit": results.commit}
@@ -108,9 +108,9 @@ def mechanics(folder):
         else:  # of a time or a length what matters is how far it is from theory
             cells = {p: f"{100 * float(r['measured']) / float(one['expected']):.2f} %" for p, r in found.items()}
         expected = number(one["expected"]) + ("" if one["unit"] == "%" else f" {one['unit']}")
-        motion.append([what + (", %" if one["unit"] == "%" else " by theory's")] + [cells.get(p, "") for p in ("60", "120", "240")] + [expected])
+        motion.append([what + (", %" if one["unit"] == "%" else " relative to theory")] + [cells.get(p, "") for p in ("60", "120", "240")] + [expected])
     ratios = results.distinct("poisson_ratio", table="beams")
-    beams = [["", "segments", "tetrahedra"] + [f"{r}: % of theory" for r in ratios] + ["ms a frame"]]
+    beams = [["", "segments", "tetrahedra"] + [f"{r}: % of theory" for r in ratios] + ["ms per frame"]]
     for r in results.where(table="beams", poisson_ratio=ratios[0]):
         keys = {c: r[c] for c in ("table", "what", "segments")}
         found = {s["poisson_ratio"]: s for s in results.where(**keys)}
@@ -130,9 +130,9 @@ def triangles(folder):
 
 def surfaces(folder):
     results = Results(folder, "surfaces")
-    rows = [["scene, contact of", "particles", "pairs with the model", "own pairs", "frames judged, of them by CGAL", "at rest in frame", "strain, %", "most ever, %",
-             "truncated a frame", "most", "unresolved", "least gap"]]
-    times = [["scene, contact of", "particles", "ms a frame, mean", "99 %", "worst", "ratio"]]
+    rows = [["scene, contact of", "particles", "pairs with the model", "own pairs", "frames judged, number judged by CGAL", "at rest in frame", "strain, %", "most ever, %",
+             "truncated per frame", "most", "unresolved", "least gap"]]
+    times = [["scene, contact of", "particles", "ms per frame, mean", "99 %", "worst", "ratio"]]
     for r in results.records:
         name = f"{r['scene']}: {r['method']}"
         rest = r["frames"] if r["rested"] == "yes" else f"not in {r['frames']}"
@@ -151,7 +151,7 @@ def engines(folder):
         values[f"engines {model}"] = "\n\n".join(
             f"{side} x {side} particles, {setup}:\n\n{engines_table(results.where(model=model, side=side, setup=setup))}"
             for side in sorted(results.distinct("side", model=model), key=int) for setup in results.distinct("setup", model=model, side=side))
-    how = [["engine, setup", "version", "steps a frame", "settings"]]
+    how = [["engine, setup", "version", "steps per frame", "settings"]]
     for name in results.distinct("engine"):
         for setup in results.distinct("setup", engine=name):
             done = results.where(engine=name, setup=setup, status="done")
@@ -162,7 +162,7 @@ def engines(folder):
 
 def engines_table(records):
     """At the end, and in brackets in the worst frame judged; times of the first half second, and in brackets of all frames."""
-    rows = [["engine", "inside", "deepest, R", "pairs with the model", "own pairs", "stretch, %", "lost", "rests from frame", "ms a frame, native",
+    rows = [["engine", "inside", "deepest, R", "pairs with the model", "own pairs", "stretch, %", "lost", "rests from frame", "ms per frame, native",
              "wasm"]]
     for r in records:
         if r["status"] != "done":
@@ -200,7 +200,7 @@ def figures(folder):
                 rows.append([f"{particles_in(results, mesh, call)}, {label(r)}"] + per_set(results, "ns", task="contains", **one)
                             + per_set(results, "ns", task="contacts", **one))
         values[f"{mesh} times"] = table(rows)
-    rows = [["model, system", "particles", "MB", "ms a frame", "frames a second", "frames to rest", "inside at the end",
+    rows = [["model, system", "particles", "MB", "ms per frame", "frames per second", "frames to rest", "inside at the end",
              "deepest ever, R"]]
     for r in results.where(task="cloth"):
         rest = r["frames"] if r["rested"] == "yes" else f"not within {r['frames']}"
@@ -273,7 +273,7 @@ def readme_table(results, mesh):
         row("contacts, calls of 10 000", "contacts", "ns", "10000", unit=" ns"),
         row("contacts, calls of 1000", "contacts", "ns", "1000", unit=" ns"),
         row("contacts, one call per particle", "contacts", "ns", "1", unit=" ns"),
-        ["cloth of 10 000 particles, a frame"] + [f"{number(cloth[s]['frame_ms'])} ms" for s in colliders.values()],
+        ["cloth of 10 000 particles, per frame"] + [f"{number(cloth[s]['frame_ms'])} ms" for s in colliders.values()],
         ["particles of it inside at rest"] + [cloth[s]["inside_at_end"] for s in colliders.values()],
     ])
 

@@ -65,7 +65,7 @@ rows() {
 
 write_tables() {
     echo
-    echo "$points points a mesh, a quarter of each kind, seed 1; $(date +%F), commit $(git rev-parse --short HEAD)."
+    echo "$points points per mesh, a quarter of each kind, seed 1; $(date +%F), commit $(git rev-parse --short HEAD)."
     echo
     echo "**Closed surfaces**"
     echo
