@@ -120,7 +120,7 @@ Contact contact(const Collider& collider, Vec3f point_world, float margin_world 
 
 /// @param points_world  [n]
 /// @param inside        [n] out: 1 inside, 0 outside. Must not overlap points_world.
-/// @param thread_count  0: all cores. Used for 32 768 points or more; a custom map is asked by all of them
+/// @param thread_count  0: all cores. Used for 32 768 points or more; all of them query a custom map
 /// @pre points_world.size() == inside.size()
 void contains_batch(const Collider& collider, StridedSpan<const Vec3f> points_world,
                     std::span<std::uint8_t> inside, unsigned thread_count = 1) noexcept;

@@ -11,7 +11,7 @@ namespace echinus {
 
 /// The part of a triangle on which the nearest point lies.
 enum class Feature : std::uint8_t {
-    Unknown, ///< no contact, or a distance map, which does not know its mesh
+    Unknown, ///< no contact, or a distance map, which does not store its mesh
     Face,
     Edge,
     Vertex,

@@ -14,8 +14,8 @@ namespace echinus {
 /// A user-defined structure that a collider queries in place of a map: a distance field, an analytic shape,
 /// another library. Derive from it and pass a shared pointer to a collider (collider.hpp).
 ///
-/// A simulation pushes particles to the contacts' points. It promises less than with an exact map: particles
-/// are not swept, so one may pass through a part that is thinner than its path in one frame.
+/// A simulation pushes particles to the contacts' points. It guarantees less than with an exact map:
+/// particles are not swept, so one may pass through a part that is thinner than its path in one frame.
 class CustomMap {
   public:
     virtual ~CustomMap() = default;

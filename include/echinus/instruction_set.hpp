@@ -7,7 +7,7 @@
 
 ECHINUS_EXPORT_BEGIN
 
-/// The vector instructions of the queries. They affect the speed, not the answers.
+/// The vector instructions that queries use. They affect the speed, not the answers.
 ///
 /// The names are "avx512", "avx2", "sse4", "neon", "wasm", and "scalar", the reference, which processes one
 /// particle after the other. The default is the first one that the machine supports; the environment variable

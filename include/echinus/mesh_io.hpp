@@ -34,7 +34,7 @@ namespace echinus {
 /// From a glTF file the meshes of the default scene, or else of the first scene, are read in their rest pose:
 /// placed by their nodes or by the bones of their skins, morphed by their default weights, and copied for
 /// each instance of EXT_mesh_gpu_instancing. Positions may be quantised (KHR_mesh_quantization). A required
-/// extension that is not supported, such as a compression, is refused as WrongFormat, by name. Buffers are
+/// extension that is not supported, such as a compression, is a WrongFormat error that names it. Buffers are
 /// looked up in the folder of the file. From a 3DS file the positions in its lists are read; keyframes only
 /// place copies of objects that have several nodes.
 ///
@@ -82,7 +82,7 @@ struct TetrahedraFile {
 /// Reads .msh (Gmsh 2.2 and 4.1, text and binary), .vtk (legacy, an unstructured grid, text and binary) and
 /// TetGen's .node with .ele. Either path names the TetGen pair, whose names differ only in the extension;
 /// indices count from 0 or 1. Points, lines, planar cells and data are ignored; volume cells other than
-/// four-node tetrahedra are refused. Tetrahedra keep their order. Coordinates are read as by read_mesh().
+/// four-node tetrahedra are rejected. Tetrahedra keep their order. Coordinates are read as by read_mesh().
 /// Positions are not welded.
 ///
 /// @throws Error Unreadable, WrongFormat, Damaged or InvalidMesh as read_mesh() does. InvalidMesh also for

@@ -75,9 +75,9 @@ struct Deformable {
     /// here.
     std::vector<Vec3f> velocities{};
     /// [particle_count] 1 / mass; 0 for a pinned particle, which stays in place or moves with its attachment.
-    /// Where surfaces collide it yields to what would meet it, and returns. Jakobsen: in any unit, since only
-    /// ratios matter. Newton takes the masses of soft bodies from here, in kg, and those of cloth from its
-    /// ClothMaterial.
+    /// Where surfaces collide, it gives way to anything that would meet it, and returns afterwards. Jakobsen:
+    /// in any unit, since only ratios matter. Newton takes the masses of soft bodies from here, in kg, and
+    /// those of cloth from its ClothMaterial.
     std::vector<float> inverse_masses;
     /// The distance constraints, in the order in which Jakobsen relaxes them. Newton uses only structural
     /// constraints that are not edges of faces: threads.
@@ -210,8 +210,8 @@ enum class CollisionMode : std::uint8_t {
 /// whatever the resolution and the time step; 1/60 s per frame is a good step.
 struct NewtonOptions {
     ClothMaterial material{};
-    /// Largest number of steps of Newton's method in each frame or substep, and twice as many while nothing
-    /// touches; fewer are taken if it converges. Fewer than two leave contacts unresolved.
+    /// Largest number of steps of Newton's method in each frame or substep, and twice as many while there is
+    /// no contact; fewer are taken if it converges. Fewer than two leave contacts unresolved.
     std::uint32_t step_count = 4;
     /// Tolerance of Newton's method, relative to the mean edge length. It has converged if the decrease of
     /// the energy corresponds to a root-mean-square displacement of at most this length.
@@ -227,10 +227,10 @@ struct NewtonOptions {
     /// less near small faces: at most 0.4 of the least height of a face, and a quarter of the mean edge
     /// length, so that neighbours have room.
     std::optional<double> self_thickness{};
-    /// Separate a start that intersects, or that lies inside a closed model, before the first frame instead
-    /// of refusing it, by moving particles that are not pinned. A start that cannot be separated is refused.
-    /// It takes up to about a hundred times the time of a search for intersecting pairs (intersections.hpp).
-    /// Needs the collision of surfaces.
+    /// Separate an initial state that intersects a model or itself, or lies inside a closed model, before the
+    /// first frame instead of rejecting it, by moving particles that are not pinned. An initial state that
+    /// cannot be separated is rejected. It takes up to about a hundred times the time of a search for
+    /// intersecting pairs (intersections.hpp). Needs the collision of surfaces.
     bool untangle = false;
 
     bool operator==(const NewtonOptions&) const = default;
@@ -239,7 +239,7 @@ struct NewtonOptions {
 /// The paper's method (section 2.3), for reproduction and comparison: Verlet integration, distance
 /// constraints of whose error each relaxation removes a share (Jakobsen 2001), and collision of particles.
 /// More relaxations per second make a stiffer cloth, so frames of 1/240 s or less are needed: halving the
-/// step doubles the computing time and leaves a quarter of the stretch. This solver refuses tetrahedra and
+/// step doubles the computing time and leaves a quarter of the stretch. This solver rejects tetrahedra and
 /// measures no loads.
 struct JakobsenOptions {
     /// Number of relaxations per frame, of all distance constraints and then of all contacts. More
@@ -324,15 +324,15 @@ struct Load {
     Vec3d torque; ///< N m, about the pose's translation, as it moves
 };
 
-/// A contact that pushed in the last frame, between a particle, edge or face of the deformable and a
+/// A contact that exerted a force in the last frame, between a particle, edge or face of the deformable and a
 /// collider, or between two elements of the deformable.
 struct ContactPoint {
-    Vec3d position;         ///< on the deformable, when it pushed last in the frame; world coordinates
+    Vec3d position;         ///< on the deformable, when the contact last exerted a force; world coordinates
     Vec3d normal;           ///< unit, towards the deformable; towards its first part where both are its own
-    double gap;             ///< when it pushed last; positive
+    double gap;             ///< when the contact last exerted a force; positive
     double normal_impulse;  ///< on the deformable (its first part) along the normal in the frame, N s
-    Vec3d friction_impulse; ///< the same across the normal, N s
-    std::uint32_t collider; ///< kNoIndex: the contact is of the deformable with itself
+    Vec3d friction_impulse; ///< the same, perpendicular to the normal, N s
+    std::uint32_t collider; ///< kNoIndex: the deformable is in contact with itself
     /// The particles of the first element, followed by those of the second one in self-collision: a vertex
     /// and the three of a face, or two and two of edges. Unused entries are kNoIndex.
     std::array<std::uint32_t, 4> particles;
@@ -344,7 +344,7 @@ struct SimulationProfile {
     double constraint_seconds = 0;   ///< Newton: its steps; Jakobsen: distance constraints
     double collision_seconds = 0;    ///< contact, and moving the colliders
     std::uint64_t query_count = 0;   ///< Jakobsen: particle queries, counted per iteration and collider
-    std::uint64_t contact_count = 0; ///< Newton: contacts that push, by step; Jakobsen: queries that pushed
+    std::uint64_t contact_count = 0; ///< Newton: active contacts, per step; Jakobsen: queries that pushed
     /// Jakobsen: queries that needed the map; with an exact map a particle that has hardly moved is answered
     /// from memory.
     std::uint64_t map_query_count = 0;
@@ -423,12 +423,12 @@ class Simulation {
     /// colliders, and finally the proof that no particle passed through an exact map. It allocates nothing
     /// after a thread's first batches.
     ///
-    /// A distance map pushes along its rays (docs/paper.md), and a custom map to the points that it returns,
-    /// both gently: a particle that is not inside is pushed no farther than it came. An exact map pushes to
-    /// the thickness above the nearest point. At the end of the frame each particle is swept from its last
-    /// free position to its present one, in the frame of the moving collider. A particle that is not free is
-    /// rescued: it is moved back in front of the crossing, where the same sweep finds it free, or to its last
-    /// free position, moved along with the collider.
+    /// A distance map pushes along its rays (docs/paper.md), and a custom map to the points that it returns;
+    /// both push a particle that is not inside back by no more than its motion towards the surface. An exact
+    /// map pushes to the thickness above the nearest point. At the end of the frame each particle is swept
+    /// from its last free position to its present one, in the frame of the moving collider. A particle that
+    /// is not free is rescued: it is moved back in front of the crossing, where the same sweep finds it free,
+    /// or to its last free position, moved along with the collider.
     ///
     /// So no particle passes through an exact map, however fast it is and however thin the model: with one
     /// exact map, close enough to the origin for floats, lost_count stays 0. This guarantee has limits:
@@ -472,8 +472,8 @@ class Simulation {
     void set_collider_velocity(std::size_t collider_index, const Vec3d& linear, const Vec3d& angular);
 
     /// The collider moves to this pose during the next frame, at constant velocity and rotating along the
-    /// shorter arc, and then stays there until the next call, up to rounding. On its path it collides and
-    /// rubs like any moving collider.
+    /// shorter arc, and then stays there until the next call, up to rounding. On its path it collides, with
+    /// friction, like any moving collider.
     /// @throws Error InvalidOptions when the pose is not finite, or the length of its rotation differs from 1
     /// by more than 1e-4
     void set_collider_pose(std::size_t collider_index, const RigidTransform& pose);
@@ -506,11 +506,11 @@ class Simulation {
     /// changed, and the teleport is dropped
     void teleport(const Teleport& teleport);
 
-    // Deforming colliders: their vertices move, and their faces stay the same. These functions need
-    // collider_index < colliders().size(), an exact map, and surfaces collide. Surfaces are kept
-    // off the moving faces as off any others (docs/surfaces.md), and attached particles follow the face that
-    // was nearest to them when the collider first deformed. Each frame that deforms a collider rebuilds its
-    // exact map on one thread, and may allocate.
+    // Deforming colliders: their vertices move, and their faces stay the same. Preconditions are
+    // collider_index < colliders().size(), a collider with an exact map, and collision of surfaces. Surfaces
+    // are kept off the moving faces as off any others (docs/surfaces.md), and attached particles follow the
+    // face that was nearest to them when the collider first deformed. Each frame that deforms a collider
+    // rebuilds its exact map on one thread, and may allocate.
 
     /// During the next frame the vertices of a collider's mesh move to these positions along straight lines;
     /// then they stop. The pose is independent and may move at the same time. The map is built in this call.
@@ -534,8 +534,8 @@ class Simulation {
     /// @pre collider_index < colliders().size()
     Load load_on(std::size_t collider_index) const;
 
-    /// Newton: sets whether the following frames record the contacts that push. It is off by default, and
-    /// then costs nothing. It is not part of a saved state.
+    /// Newton: sets whether the following frames record the contacts that exert a force. It is off by
+    /// default, and then costs nothing. It is not part of a saved state.
     void record_contacts(bool is_on);
     /// The contacts that were recorded in the last frame, in unspecified order; valid until the next frame.
     /// Their impulses divided by the time step sum to the opposite of load_on() of each collider, except for

@@ -23,8 +23,8 @@ struct SurfaceCollisionOptions {
     /// Distance in units that layers keep from each other; by default the thickness. It is less near small
     /// faces.
     std::optional<double> self_thickness{};
-    /// If possible, separate a start that intersects, or that lies inside a closed model, instead of refusing
-    /// it.
+    /// If possible, separate an initial state that intersects a model or itself, or lies inside a closed
+    /// model, instead of rejecting it.
     bool untangle = false;
     unsigned thread_count = 1; ///< as in ParticleCollisionOptions
 };

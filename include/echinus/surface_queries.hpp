@@ -14,7 +14,8 @@
 ECHINUS_EXPORT_BEGIN
 
 /// Queries of triangles against the surface of an exact map: the nearby faces, the distance to the nearest
-/// one, intersection tests, and sweeps. They need no inside, so open meshes work as well as closed ones.
+/// one, intersection tests, and sweeps. They do not depend on an inside, so open meshes work as well as
+/// closed ones.
 ///
 /// The surface is that of the map: the faces of the mesh with their vertices on the map's lattice, at most R
 /// / 2^20 from those of the mesh along each axis, without faces that have no area there. Everything is in the
@@ -30,8 +31,8 @@ using TrianglePoints = std::array<Vec3f, 3>;
 
 /// Does the triangle have a point in common with the surface? Touching counts. Corners are snapped to the
 /// lattice like particles, so that neighbours stay neighbours; then the answer is exact. Farther than 32 R
-/// from the map's centre the lattice is as coarse as floats in lattice steps, and a corner farther than 10^32
-/// R counts as not finite. The query does not allocate.
+/// from the map's centre, corners are rounded as coarsely as floats in units of lattice steps, and a corner
+/// farther than 10^32 R counts as not finite. The query does not allocate.
 bool intersects(const ExactMapView& map, const TrianglePoints& triangle_local) noexcept;
 
 /// The distance of a triangle from the surface.
@@ -52,7 +53,7 @@ struct Clearance {
 Clearance clearance(const ExactMapView& map, const TrianglePoints& triangle_local,
                     float farthest = std::numeric_limits<float>::infinity()) noexcept;
 
-/// The point in time at which a moving triangle first reaches the surface.
+/// The time at which a moving triangle first reaches the surface.
 struct TriangleSweepHit {
     /// The fraction of the path up to which the triangle does not meet the surface; 1 if it does not meet it
     /// at all.

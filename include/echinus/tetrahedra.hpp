@@ -65,9 +65,9 @@ struct TetrahedralizeOptions {
     /// The target number of tetrahedra. The size is found by trial, to within 5 % of the number where the
     /// model allows it; each trial takes as long as a call with a size.
     std::size_t count = 0;
-    /// The largest number of tetrahedra; more are refused. A million takes 150 MB while they are made, and
+    /// The largest number of tetrahedra; more are rejected. A million takes 150 MB while they are made, and
     /// the lattice in the model's box takes 1.2 bytes per vertex, of which more than kMaxLatticeVertices are
-    /// refused, too.
+    /// rejected, too.
     std::size_t most_tetrahedra = 10'000'000;
     unsigned thread_count = 0; ///< 0: all cores. The result does not depend on it.
     /// Called with the completed share, from one thread at a time; each trial starts again at 0. It may throw

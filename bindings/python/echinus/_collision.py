@@ -141,7 +141,7 @@ class SurfaceCollision:
     self_collision
         Faces do not intersect each other either.
     untangle
-        Separate a start that intersects, or is inside the model, instead of refusing it.
+        Separate an initial state that intersects, or is inside the model, instead of rejecting it.
     threads
         Threads that share a step; 0: all cores. The results do not depend on it, bit for bit (0 to 1024).
 

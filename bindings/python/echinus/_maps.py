@@ -291,8 +291,8 @@ class ExactMap(_Map[_core.ExactMap]):
         Cells in each octant of directions, rounded down to a square number; 0: chosen by the mesh. More cells take
         memory and save time; they do not change any answer (0 to 262144).
     budget
-        The largest size of the map, which gets as many cells as fit; 0: no limit. Not together with a number of
-        cells (0 to 4e9 bytes).
+        The largest size of the map, which gets as many cells as fit; 0: no limit. It cannot be combined with a
+        number of cells (0 to 4e9 bytes).
     rule
         The inside where parts of the model overlap: their union, or the points in an odd number of parts.
     centre

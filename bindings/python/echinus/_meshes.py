@@ -267,8 +267,8 @@ def repair(
         Fill holes whose border has at most this number of edges, with the triangulation of least area. The rim of a
         sheet, whose filling would have more than a third of the sheet's area, is not a hole (0 to 256).
     drop_inner_faces
-        Drop faces that have the solid on both sides, such as those of an engine in the body of a car: a patch of
-        neighbours at a time, if no remaining edge becomes less balanced.
+        Drop faces that have the solid on both sides, such as those of an engine in the body of a car: one patch of
+        neighbours at a time, and only if no remaining edge becomes less balanced.
     sheet_thickness
         Thicken open parts into solids of this thickness, half of it on either side; 0: none (not negative).
     close_seams

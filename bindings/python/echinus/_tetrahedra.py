@@ -151,13 +151,14 @@ def tetrahedralize(
     model
         The map of a surface; for an open one the winding number decides what is inside.
     size
-        The edge of the lattice's cubes, in the model's unit. Either this or ``count``; 0: the other (not negative).
+        The edge of the lattice's cubes, in the model's unit. Set either this or ``count``; 0: not set (not
+        negative).
     count
         The target number of tetrahedra: the size is found by trial.
     most_tetrahedra
-        The largest number of tetrahedra; more are refused.
+        The largest number of tetrahedra; more are rejected.
     threads
-        Threads; 0: all cores. The result does not depend on it.
+        Threads to use; 0: all cores. The result does not depend on it.
 
     Raises
     ------

@@ -113,7 +113,7 @@ export class Echinus {
 
     /**
      * Collision for particles that another solver moves.
-     * @throws InvalidOptions as for the options of a scene, and with `surfaces` for a start that intersects
+     * @throws InvalidOptions as for the options of a scene, and with `surfaces` for an initial state that intersects
      */
     makeCollision(options: CollisionOptions): Collision;
 
@@ -281,8 +281,8 @@ export interface ExactMapOptions {
      */
     cells_per_octant?: number;
     /**
-     * The largest size of the map, which gets as many cells as fit; 0: no limit. Not together with a number of cells (0
-     * to 4e9 bytes). Default: none.
+     * The largest size of the map, which gets as many cells as fit; 0: no limit. It cannot be combined with a number of
+     * cells (0 to 4e9 bytes). Default: none.
      */
     budget?: number;
     /**
@@ -607,8 +607,8 @@ export interface SceneDescription {
         // End of options.
         // Options: material. By bindings/generate_options from bindings/options.toml: edit that.
         /**
-         * `jakobsen` only: share of the velocity that is lost per frame; another `time_step` makes another drag (0 to
-         * 1). Default: 0.005.
+         * `jakobsen` only: share of the velocity that is lost per frame; its effect depends on `time_step` (0 to 1).
+         * Default: 0.005.
          */
         drag?: number;
         /** Coulomb's coefficient between cloth and model; 0 is no friction (0 to 1e9). Default: 0.5. */
@@ -622,14 +622,15 @@ export interface SceneDescription {
     };
     // Options: surfaces. By bindings/generate_options from bindings/options.toml: edit that.
     /**
-     * The parts that collide, with `jakobsen` particles only. `particles`: particles with models; `surfaces`: edges and
-     * faces, too: none of them intersects a model at the end of a frame, within limits; `surfaces_and_self`: faces do
-     * not intersect each other either. Default: `surfaces_and_self` with an exact map, otherwise `particles`.
+     * The parts that collide; with `jakobsen` only particles do. `particles`: particles collide with models;
+     * `surfaces`: edges and faces do, too, so none of them intersects a model at the end of a frame, within limits;
+     * `surfaces_and_self`: in addition, faces do not intersect each other. Default: `surfaces_and_self` with an exact
+     * map, otherwise `particles`.
      */
     collision?: 'particles' | 'surfaces' | 'surfaces_and_self';
     /**
-     * `newton` only: separate a start that intersects, or is inside the model, before the first frame instead of
-     * refusing it; needs the collision of surfaces. Default: false.
+     * `newton` only: separate an initial state that intersects, or is inside the model, before the first frame instead
+     * of rejecting it; needs the collision of surfaces. Default: false.
      */
     untangle?: boolean;
     // End of options.
@@ -650,8 +651,8 @@ export interface SceneDescription {
      */
     iterations?: number;
     /**
-     * `newton` only: the largest number of steps of Newton's method per frame, and twice as many while nothing touches;
-     * fewer are taken if it converges (1 to 1000). Default: 4.
+     * `newton` only: the largest number of steps of Newton's method per frame, and twice as many while there is no
+     * contact; fewer are taken if it converges (1 to 1000). Default: 4.
      */
     newton_steps?: number;
     /**
@@ -807,7 +808,7 @@ export class Scene extends Deletable {
      *                 out; cloth, clothAtRest: the meshes of clothFile and clothRestFile, welded; bodies: for each body
      *                 its closed surface, which is filled with tetrahedra; null for a generated shape
      * @throws InvalidOptions for the exact map of an open mesh otherwise, for more or fewer maps than colliders, where
-     * a mesh is not given, and where surfaces collide for a start that intersects; InvalidMesh for a mesh that is no
+     * a mesh is not given, and where surfaces collide for an initial state that intersects; InvalidMesh for a mesh that is no
      * cloth
      */
     makeSimulation(

@@ -13,9 +13,9 @@
 /// exception leaves a function. A function that fails sets its output handle to NULL, and changes nothing
 /// else unless its declaration says so.
 ///
-/// Null pointers. An argument that is NULL is ECHINUS_INVALID_ARGUMENT, unless its declaration says "or
-/// NULL". An array of 0 elements may be NULL. The functions that end in _destroy take NULL and do nothing.
-/// Functions that return a value and no status return 0 or NULL for a handle that is NULL.
+/// Null pointers. A NULL argument gives ECHINUS_INVALID_ARGUMENT, unless its declaration says "or NULL". An
+/// array of 0 elements may be NULL. The functions that end in _destroy take NULL and do nothing. Functions
+/// that return a value and no status return 0 or NULL for a handle that is NULL.
 ///
 /// Ownership. The caller owns a handle that a function returns through an echinus_..._ **, and destroys it
 /// once with the _destroy function of its type. A function reads const arguments only during the call, unless
@@ -33,7 +33,7 @@
 /// for results the caller sets .size before the call. New members will be added at the end with a default of
 /// zero. So a program and a library of different versions are compatible; a call fails with
 /// ECHINUS_INVALID_ARGUMENT if the program sets a member that the library does not have. Flags are 0 or 1,
-/// and reserved members of options are 0; other values are ECHINUS_INVALID_ARGUMENT.
+/// and reserved members of options are 0; other values give ECHINUS_INVALID_ARGUMENT.
 ///
 /// Frames, units and terms are those of docs/conventions.md: right-handed, lengths in the caller's unit,
 /// angles in radians, faces counter-clockwise seen from outside, rotations as unit quaternions w, x, y, z.
@@ -43,7 +43,7 @@
 /// Origins. A mesh that is so far from 0 in its file that floats could not represent its shape has an origin,
 /// and so have its map and its tetrahedra: local positions are then relative to the origin, which is 0 for
 /// all other meshes. echinus_to_local() converts doubles to local points. A collider's pose and scale place
-/// the file's frame: world = pose (scale (origin + local)). Simulations refuse an origin that is not 0.
+/// the file's frame: world = pose (scale (origin + local)). Simulations reject an origin that is not 0.
 
 #ifdef __cplusplus
 extern "C" {
@@ -77,8 +77,8 @@ typedef enum echinus_status {
     ECHINUS_DIVERGED = 9,            ///< a simulation whose positions are not finite or have left all bounds
     ECHINUS_INVALID_ARGUMENT =
         100, ///< NULL, a wrong size or stride, an index out of range, a map of another kind
-    ECHINUS_OUT_OF_MEMORY = 101, ///< memory did not suffice
-    ECHINUS_INTERNAL = 102       ///< a bug of the library: please report it
+    ECHINUS_OUT_OF_MEMORY = 101, ///< out of memory
+    ECHINUS_INTERNAL = 102       ///< a bug in the library: please report it
 } echinus_status;
 
 /// The name of a status as declared above, for instance "ECHINUS_OK"; "unknown status" for any other number.
@@ -103,8 +103,8 @@ ECHINUS_API const char* echinus_available_instruction_set(size_t number);
 /// Selects another set for the whole process, from the next query on. Any thread may call this.
 ECHINUS_API echinus_status echinus_use_instruction_set(const char* name);
 
-/// In place of the index of a face, a particle or a collider: there is none, or it is not known. All indices
-/// in arrays and results are uint32_t.
+/// The index of a face, a particle or a collider that does not exist or is not known. All indices in arrays
+/// and results are uint32_t.
 #define ECHINUS_NONE UINT32_MAX
 
 // ---- Arrays ----
@@ -235,8 +235,8 @@ typedef struct echinus_repair_options {
     /// rim of a sheet, whose filling would have more than a third of the sheet's area, is not a hole (0 to
     /// 256)
     uint32_t max_hole_edges;
-    /// Drop faces that have the solid on both sides, such as those of an engine in the body of a car: a patch
-    /// of neighbours at a time, if no remaining edge becomes less balanced
+    /// Drop faces that have the solid on both sides, such as those of an engine in the body of a car: one
+    /// patch of neighbours at a time, and only if no remaining edge becomes less balanced
     int32_t drop_inner_faces;
     /// Thicken open parts into solids of this thickness, half of it on either side; 0: none (not negative)
     double sheet_thickness;
@@ -275,7 +275,7 @@ typedef struct echinus_repair_report {
 
 /// Makes a repaired copy of a mesh. Faces keep their order, and new faces are appended. Vertices do not
 /// change, except those of thickened sheets.
-/// @param report         out, the caller sets its size; or NULL
+/// @param report         out; the caller sets its size; or NULL
 /// @param dropped_faces  out, uint32_t: indices of the dropped faces in the given mesh, ascending; faces that
 /// closed a hole have indices after those of the mesh; or NULL
 /// @return ECHINUS_INVALID_MESH; ECHINUS_INVALID_OPTIONS for more edges than 256, or a thickness or weld
@@ -335,8 +335,8 @@ typedef struct echinus_exact_map_options {
     uint32_t divisions;
     /// Threads that build the map; 0: all cores. The map does not depend on it
     uint32_t thread_count;
-    /// The largest size of the map, which gets as many cells as fit; 0: no limit. Not together with a number
-    /// of cells (0 to 4e9 bytes)
+    /// The largest size of the map, which gets as many cells as fit; 0: no limit. It cannot be combined with
+    /// a number of cells (0 to 4e9 bytes)
     uint64_t byte_budget;
     /// The inside where parts of the model overlap: their union, or the points in an odd number of parts
     echinus_inside_rule rule;
@@ -550,7 +550,7 @@ ECHINUS_API echinus_status echinus_map_from_custom(const echinus_custom_map* cus
 //
 // A point with NaN or infinity is outside, has no contact and meets nothing. A call takes up to 120 KB of the
 // stack. Batches are several times as fast as calls for single points, and give bit-identical answers. Custom
-// maps are queried through colliders: here they are ECHINUS_INVALID_ARGUMENT.
+// maps are queried through colliders: here they give ECHINUS_INVALID_ARGUMENT.
 
 /// The part of a triangle on which the nearest point lies.
 typedef enum echinus_feature {
@@ -686,8 +686,9 @@ typedef struct echinus_pose {
 /// @param rotation  [4] out: w, x, y, z
 ECHINUS_API echinus_status echinus_rotation_about(const double* axis, double angle_rad, double* rotation);
 
-/// A map in the world: a plain value that the caller owns. Its map must outlive its use, except in a
-/// simulation, which keeps the data that it needs. In an array all colliders have the size of the first.
+/// A map in the world: a plain value that the caller owns. The map must exist as long as the collider is
+/// used, except in a simulation, which keeps the data that it needs. In an array all colliders have the size
+/// of the first.
 typedef struct echinus_collider {
     size_t size;
     const echinus_map* map;
@@ -784,7 +785,7 @@ ECHINUS_API echinus_status echinus_vertex_cache_at(const echinus_vertex_cache* c
 // ---- Tetrahedra: solids divided into tetrahedra (docs/tetrahedra.md) ----
 
 /// A body of tetrahedra that share vertices. Each tetrahedron is positive, and two with a common face lie on
-/// opposite sides of it; other bodies are refused. It is immutable.
+/// opposite sides of it; other bodies are rejected. It is immutable.
 typedef struct echinus_tetrahedra echinus_tetrahedra;
 
 /// Copies vertices and tetrahedra.
@@ -804,7 +805,7 @@ typedef struct echinus_tetrahedra_file_report {
 
 /// Reads .msh (Gmsh 2.2 and 4.1), .vtk (legacy, an unstructured grid) or TetGen's .node with .ele, either of
 /// which names the pair.
-/// @param report  out, the caller sets its size; or NULL
+/// @param report  out; the caller sets its size; or NULL
 /// @return ECHINUS_UNREADABLE, ECHINUS_WRONG_FORMAT, ECHINUS_DAMAGED or ECHINUS_INVALID_MESH
 ECHINUS_API echinus_status echinus_tetrahedra_read(const char* path, echinus_tetrahedra** body,
                                                    echinus_tetrahedra_file_report* report);
@@ -822,14 +823,14 @@ ECHINUS_API echinus_status echinus_tetrahedra_box(const double* size, const uint
 // Options: tetrahedralize. By bindings/generate_options from bindings/options.toml: edit that.
 typedef struct echinus_tetrahedralize_options {
     size_t size;
-    /// The edge of the lattice's cubes, in the model's unit. Either this or count; 0: the other (not
+    /// The edge of the lattice's cubes, in the model's unit. Set either this or count; 0: not set (not
     /// negative)
     double lattice_size;
     /// The target number of tetrahedra: the size is found by trial
     uint64_t count;
-    /// The largest number of tetrahedra; more are refused
+    /// The largest number of tetrahedra; more are rejected
     uint64_t most_tetrahedra;
-    /// Threads; 0: all cores. The result does not depend on it
+    /// Threads to use; 0: all cores. The result does not depend on it
     uint32_t thread_count;
     /// 0
     uint32_t reserved;
@@ -846,7 +847,7 @@ typedef struct echinus_tetrahedralize_report {
 
 /// Fills the inside of an exact map with tetrahedra, by isosurface stuffing. The boundary is closed, manifold
 /// and does not intersect itself; the extreme dihedral angles are 9.3 and 161.7 degrees.
-/// @param report  out, the caller sets its size; or NULL
+/// @param report  out; the caller sets its size; or NULL
 /// @return ECHINUS_INVALID_OPTIONS; ECHINUS_INVALID_MESH when no tetrahedron of that size fits into the
 /// model; ECHINUS_INVALID_ARGUMENT for a map of another kind
 ECHINUS_API echinus_status echinus_tetrahedralize(const echinus_map* model,
@@ -1104,7 +1105,7 @@ ECHINUS_API echinus_status echinus_deformable_with_masses_times(const echinus_de
 ECHINUS_API echinus_status echinus_deformable_passing_through(const echinus_deformable* deformable,
                                                               uint32_t collider, echinus_deformable** result);
 
-/// @param arrays  out, the caller sets its size; its pointers are valid as long as the deformable
+/// @param arrays  out; the caller sets its size; its pointers are valid as long as the deformable
 ECHINUS_API echinus_status echinus_deformable_read(const echinus_deformable* deformable,
                                                    echinus_deformable_arrays* arrays);
 
@@ -1141,8 +1142,8 @@ typedef struct echinus_simulation_options {
     /// Jakobsen only: relaxations per frame, each of all distance constraints and then of all contacts; more
     /// relaxations take longer and leave less stretch (1 to 1e6)
     uint32_t iteration_count;
-    /// Newton only: the largest number of steps of Newton's method per frame, and twice as many while nothing
-    /// touches; fewer are taken if it converges (1 to 1000)
+    /// Newton only: the largest number of steps of Newton's method per frame, and twice as many while there
+    /// is no contact; fewer are taken if it converges (1 to 1000)
     uint32_t newton_step_count;
     /// The number of consecutive frames for which all particles must be slow and near one position (1 to 1e9)
     uint32_t rest_frame_count;
@@ -1153,8 +1154,7 @@ typedef struct echinus_simulation_options {
     /// The acceleration of gravity. A model whose y axis points up needs [0, -9.81, 0] (-1e9 to 1e9
     /// length/s^2)
     double gravity[3];
-    /// Jakobsen only: share of the velocity that is lost per frame; another time_step makes another drag (0
-    /// to 1)
+    /// Jakobsen only: share of the velocity that is lost per frame; its effect depends on time_step (0 to 1)
     double drag;
     /// Jakobsen only: share of a constraint's error that one relaxation removes, for structural, shear and
     /// bending constraints (0 to 1.99)
@@ -1175,12 +1175,12 @@ typedef struct echinus_simulation_options {
     /// Accept exact maps of open meshes, for which nothing is guaranteed. The collision of surfaces does not
     /// need this option
     int32_t allow_open_colliders;
-    /// The parts that collide, with jakobsen particles only. particles: particles with models; surfaces:
-    /// edges and faces, too: none of them intersects a model at the end of a frame, within limits;
-    /// surfaces_and_self: faces do not intersect each other either
+    /// The parts that collide; with jakobsen only particles do. particles: particles collide with models;
+    /// surfaces: edges and faces do, too, so none of them intersects a model at the end of a frame, within
+    /// limits; surfaces_and_self: in addition, faces do not intersect each other
     echinus_collision_mode collision;
-    /// Newton only: separate a start that intersects, or is inside the model, before the first frame instead
-    /// of refusing it; needs the collision of surfaces
+    /// Newton only: separate an initial state that intersects, or is inside the model, before the first frame
+    /// instead of rejecting it; needs the collision of surfaces
     int32_t untangle;
     /// 0
     uint32_t reserved;
@@ -1258,7 +1258,7 @@ ECHINUS_API size_t echinus_simulation_particle_count(const echinus_simulation* s
 /// the simulation exists, and each step overwrites the values.
 ECHINUS_API const float* echinus_simulation_positions(const echinus_simulation* simulation);
 /// All arrays of the deformable in its present state.
-/// @param arrays  out, the caller sets its size; its pointers are valid as long as the simulation
+/// @param arrays  out; the caller sets its size; its pointers are valid as long as the simulation
 ECHINUS_API echinus_status echinus_simulation_read(const echinus_simulation* simulation,
                                                    echinus_deformable_arrays* arrays);
 
@@ -1306,8 +1306,8 @@ ECHINUS_API echinus_status echinus_simulation_read_options(const echinus_simulat
 
 ECHINUS_API size_t echinus_simulation_collider_count(const echinus_simulation* simulation);
 /// A collider in its present pose.
-/// @param collider  out, the caller sets its size; its map is valid as long as the simulation. The map of a
-/// deforming collider is that of its present vertices until the collider is read again
+/// @param collider  out; the caller sets its size; its map is valid as long as the simulation. For a
+/// deforming collider it is the map of the vertices at the time of the last such call
 ECHINUS_API echinus_status echinus_simulation_read_collider(const echinus_simulation* simulation,
                                                             size_t index, echinus_collider* collider);
 
@@ -1370,7 +1370,7 @@ typedef struct echinus_contact_point {
     double gap;                 ///< the last one in the frame; positive
     double normal_impulse;      ///< on the deformable (its first part), along the normal, N s
     double friction_impulse[3]; ///< of friction, perpendicular to the normal, N s
-    uint32_t collider;          ///< ECHINUS_NONE: the contact is of the deformable with itself
+    uint32_t collider;          ///< ECHINUS_NONE: the deformable is in contact with itself
     /// The particles of the first element, followed by those of the second one in self-collision: a vertex
     /// and the three of a face, or two and two of edges. Unused entries are ECHINUS_NONE.
     uint32_t particles[4];
@@ -1472,7 +1472,7 @@ typedef struct echinus_surface_collision_options {
     double self_thickness;
     /// Faces do not intersect each other either
     int32_t self_collision;
-    /// Separate a start that intersects, or is inside the model, instead of refusing it
+    /// Separate an initial state that intersects, or is inside the model, instead of rejecting it
     int32_t untangle;
     /// Threads that share a step; 0: all cores. The results do not depend on it, bit for bit (0 to 1024)
     uint32_t thread_count;
