@@ -192,12 +192,11 @@ void NewtonSolver::deform() {
     }
 }
 
-/// So that what is carried along keeps its gaps, and that impacts are solved where they happen.
+/// So that impacts are solved where they happen.
 std::uint32_t NewtonSolver::part_count() {
     if (!options.surfaces_collide()) return 1;
     find_now();
     const double room = threshold::kDecidingRoom * fastest() * options.time_step;
-    double longest = handles_.longest_displacement(time_of(0), time_of(1));
     for (std::size_t c = 0; c < colliders.size(); ++c) {
         Collider after = colliders[c];
         after.pose = pose_without_contact(c, options.time_step);
@@ -206,14 +205,11 @@ std::uint32_t NewtonSolver::part_count() {
                                                          room, threshold::kTouch * thickness_))
                           ? 1
                           : 0;
-        const double rigid = is_near_[c] != 0 ? CarryField::longest_displacement(colliders[c], after) : 0;
-        longest = std::max(longest, rigid + deformations_[c].longest);
     }
     for (FreeBody& body : free_bodies()) body.goal_pose = guess(body, options.time_step);
     const double overlap = contacts_->overlap_ahead(colliders, now_, guess(motion_.places, options.time_step),
                                                     may_touch_, workers_);
-    const double parts = std::ceil(std::max(longest / (threshold::kMostCarried * thickness_),
-                                            overlap / (threshold::kMostOverlap * mean_edge_)));
+    const double parts = std::ceil(overlap / (threshold::kMostOverlap * mean_edge_));
     return static_cast<std::uint32_t>(std::clamp(parts, 1.0, double{threshold::kMostPartsOfFrame}));
 }
 

@@ -45,18 +45,6 @@ void Handles::follow(double from_time, double to_time, PointArrays& positions) c
     }
 }
 
-double Handles::longest_displacement(double from_time, double to_time) const {
-    double longest = 0;
-    for (const Held& held : held_) {
-        if (!moves(held, from_time, to_time)) continue;
-        const RigidTransform from = pose_at(held.handle.keys, from_time),
-                             to = pose_at(held.handle.keys, to_time);
-        for (std::size_t n = 0; n < held.places.size(); ++n)
-            longest = std::max(longest, length(place_at(held, n, to) - place_at(held, n, from)));
-    }
-    return longest;
-}
-
 bool Handles::all_done(double time) const {
     return std::all_of(held_.begin(), held_.end(), [&](const Held& held) {
         if (held.is_open) return true;

@@ -38,8 +38,6 @@ class Handles {
     }
     /// Puts the particles that are held where paths lead them from one time to another.
     void follow(double from_time, double to_time, PointArrays& positions) const;
-    /// The longest way of one of them meanwhile, as the crow flies.
-    double longest_displacement(double from_time, double to_time) const;
     /// Is nothing to come?
     bool all_done(double time) const;
     /// All is elsewhere: paths and what is held.
