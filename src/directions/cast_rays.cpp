@@ -85,7 +85,7 @@ std::vector<std::uint32_t> offsets_of(const Batches& batches, std::size_t direct
     }
     if (total > std::numeric_limits<std::uint32_t>::max())
         throw Error(ErrorCode::InvalidMesh, "the rays cross the mesh " + std::to_string(total) +
-                                                " times, more than a map can hold; take fewer directions");
+                                                " times, more than a map can hold; use fewer directions");
     for (std::size_t d = 0; d < direction_count; ++d) offsets[d + 1] += offsets[d];
     return offsets;
 }

@@ -31,8 +31,8 @@ class Checker {
         if (name_ == nullptr)
             throw Error(ErrorCode::Damaged,
                         "a map was built that contradicts itself: " + finding +
-                            "; this is a fault of Echinus " + version() +
-                            " and not of the mesh: please report it with the mesh and the options");
+                            "; this is a bug in Echinus " + version() +
+                            " and not a fault of the mesh: please report it with the mesh and the options");
         throw Error(ErrorCode::Damaged, *name_ + ": the map is damaged: " + finding + kBuildAgain);
     }
 

@@ -66,7 +66,7 @@ void check_mesh(const Checker& checker, const ExactMapView& map) {
         const BorderEdge& edge = map.border[i];
         if (edge.a >= map.vertices.size() || edge.b >= map.vertices.size())
             checker.fail("border", i, "names a vertex that does not exist");
-        if (edge.a == edge.b || edge.multiplicity == 0) checker.fail("border", i, "is no edge");
+        if (edge.a == edge.b || edge.multiplicity == 0) checker.fail("border", i, "is not an edge");
     }
 }
 
@@ -131,7 +131,7 @@ class TreeCheck {
         depths_[0] = 1;
         // Children come after their parents, so one pass visits every node after its parent.
         for (std::uint32_t node = 0; node < map_.nodes.size(); ++node) {
-            if (depths_[node] == 0) checker_.fail("nodes", node, "is no child of an earlier one");
+            if (depths_[node] == 0) checker_.fail("nodes", node, "is not a child of an earlier one");
             for (std::size_t k = 0; k < kWidth; ++k) check_child(node, k);
         }
         for (std::size_t leaf = 0; leaf < leaf_count_; ++leaf)
@@ -148,7 +148,7 @@ class TreeCheck {
         const std::uint32_t child = n.children[k];
         if (n.low[0][k] > n.high[0][k]) {
             if (n.low[1][k] <= n.high[1][k] || n.low[2][k] <= n.high[2][k] || child != 0)
-                fail(node, k, "is neither a child nor the mark of none");
+                fail(node, k, "is neither a child nor the marker for no child");
             return;
         }
         if ((child & TreeNode::kLeaf) != 0)

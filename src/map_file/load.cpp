@@ -31,8 +31,8 @@ bool has_sound_structure(std::span<const std::byte> bytes) {
 
 [[noreturn]] void fail_structure(const std::string& name, std::size_t byte_count) {
     throw Error(ErrorCode::Damaged, name + ": the map file is truncated or damaged: its " +
-                                        std::to_string(byte_count) +
-                                        " bytes contradict each other in structure" + kBuildAgain);
+                                        std::to_string(byte_count) + " bytes have an inconsistent structure" +
+                                        kBuildAgain);
 }
 
 void require_map_file(std::span<const std::byte> bytes, const std::string& name) {

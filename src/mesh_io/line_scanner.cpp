@@ -154,7 +154,7 @@ std::string_view LineScanner::take_line() {
         next_ = text.size();
     } else {
         fail_at(number, ErrorCode::WrongFormat,
-                std::string("the line has control characters, so the file is no text") +
+                std::string("the line has control characters, so the file is not text") +
                     (behind[0] == '\0' ? ", or it is UTF-16, which must be saved as UTF-8" : ""));
     }
     return without_comment(rest.substr(0, end));

@@ -69,7 +69,7 @@ class ByteReader {
     std::size_t require(std::size_t byte_count) {
         if (byte_count > bytes_left())
             source_.fail(ErrorCode::Damaged, "the file ends at byte " + std::to_string(source_.bytes.size()) +
-                                                 ", inside of the data that its head promises");
+                                                 ", within the data that its header declares");
         offset_ += byte_count;
         return offset_ - byte_count;
     }

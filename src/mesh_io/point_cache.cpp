@@ -90,7 +90,7 @@ PointCacheReader::PointCacheReader(const std::filesystem::path& path) : name_(pa
     frames_per_sample_ = number_at<float>(bytes, 24);
     sample_count_ = count_at(bytes, 28, name_, "samples");
     if (!std::isfinite(start_frame_) || !std::isfinite(frames_per_sample_) || frames_per_sample_ <= 0)
-        fail(ErrorCode::Damaged, name_, "the header's start frame and frames per sample make no sense");
+        fail(ErrorCode::Damaged, name_, "the header's start frame and frames per sample are not valid");
     // At most 32 + 12 * 2^31 * 2^31, which a 64-bit size holds.
     const std::uint64_t expected = kHeaderSize + std::uint64_t{12} * point_count_ * sample_count_;
     if (file_.size() != expected)
@@ -106,7 +106,7 @@ std::vector<Vec3f> PointCacheReader::positions(std::size_t sample) const {
     if (file_.read(kHeaderSize + byte_count * sample, std::as_writable_bytes(std::span(points))) !=
         byte_count)
         fail(ErrorCode::Damaged, name_,
-             "was shortened while it was read: sample " + std::to_string(sample) + " is not there any more");
+             "was shortened while it was read: sample " + std::to_string(sample) + " is missing");
     for (std::size_t i = 0; i < points.size(); ++i)
         if (!is_finite(points[i]))
             fail(ErrorCode::Damaged, name_,

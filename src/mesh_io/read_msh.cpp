@@ -145,7 +145,7 @@ class MshReader {
         if (mesh_.vertices.size() != node_count)
             numbers_.fail(ErrorCode::Damaged, "there are " + std::to_string(mesh_.vertices.size()) +
                                                   " nodes, not " + std::to_string(node_count) +
-                                                  " as the section promises");
+                                                  " as the section declares");
     }
 
     void read_elements_4() {
@@ -167,7 +167,7 @@ class MshReader {
         }
         if (read_count != element_count)
             numbers_.fail(ErrorCode::Damaged, "there are " + std::to_string(read_count) + " elements, not " +
-                                                  std::to_string(element_count) + " as the section promises");
+                                                  std::to_string(element_count) + " as the section declares");
     }
 
     // ---- Both
@@ -189,9 +189,10 @@ class MshReader {
         }
         const std::optional<int> node_count = flat_node_count(type);
         if (!node_count)
-            numbers_.fail(ErrorCode::WrongFormat,
-                          "an element of type " + std::to_string(type) +
-                              " is no tetrahedron of four corners; save the body as first-order tetrahedra");
+            numbers_.fail(
+                ErrorCode::WrongFormat,
+                "an element of type " + std::to_string(type) +
+                    " is not a tetrahedron with four corners; save the body as first-order tetrahedra");
         for (int i = 0; i < *node_count; ++i) numbers_.integer(number_type, "a node");
     }
 

@@ -42,10 +42,10 @@ class ObjReader {
         else if (keyword == "call")
             scanner_.fail(
                 ErrorCode::WrongFormat,
-                "'call' takes statements from another file, which is not read; put them in its place");
+                "'call' includes statements from another file, which is not read; insert them in its place");
         else if (std::find(kOtherStatements.begin(), kOtherStatements.end(), keyword) ==
                  kOtherStatements.end())
-            scanner_.fail(ErrorCode::WrongFormat, in_quotes(keyword) + " is no statement of an OBJ file");
+            scanner_.fail(ErrorCode::WrongFormat, in_quotes(keyword) + " is not a statement of an OBJ file");
         else
             require_nothing_swallowed(keyword);
     }
@@ -66,7 +66,7 @@ class ObjReader {
                 scanner_.fail(
                     ErrorCode::Damaged,
                     in_quotes(keyword) +
-                        " goes on in the next line, as the backslash at the end of its own says, but there " +
+                        " continues on the next line, as the backslash at its end says, but there " +
                         in_quotes(word) + " follows; remove the backslash");
     }
 

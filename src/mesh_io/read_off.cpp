@@ -33,8 +33,8 @@ class OffReader {
         for (std::size_t i = 0; i < face_count; ++i) read_face(promised("face", i, face_count));
         scanner_.read_within_lines();
         if (scanner_.next_line())
-            scanner_.fail(ErrorCode::Damaged, "the file goes on after the " + std::to_string(face_count) +
-                                                  " faces that its head promises");
+            scanner_.fail(ErrorCode::Damaged, "the file continues after the " + std::to_string(face_count) +
+                                                  " faces that its header declares");
         return std::move(mesh_);
     }
 
@@ -100,7 +100,7 @@ class OffReader {
         else
             scanner_.read_across_lines(", where numbers are read across lines, as " +
                                        std::to_string(line_count) +
-                                       " lines follow the head, but it promises " +
+                                       " lines follow the header, but it declares " +
                                        std::to_string(element_count) + " vertices and faces");
     }
 

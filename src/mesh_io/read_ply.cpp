@@ -67,7 +67,7 @@ PlyType type_named(std::string_view word, const LineScanner& scanner) {
     const auto* const found =
         std::find_if(kTypes.begin(), kTypes.end(), [&](const auto& type) { return type.first == word; });
     if (found == kTypes.end())
-        scanner.fail(ErrorCode::Damaged, in_quotes(word) + " is no type of a property");
+        scanner.fail(ErrorCode::Damaged, in_quotes(word) + " is not a type of a property");
     return found->second;
 }
 
@@ -148,7 +148,7 @@ PlyHeader read_ply_header(LineScanner& scanner) {
             header.elements.back().properties.push_back(read_property(scanner));
         else
             scanner.fail(ErrorCode::Damaged,
-                         in_quotes(keyword) + " has no meaning here in the head of a PLY file");
+                         in_quotes(keyword) + " has no meaning here in the header of a PLY file");
     }
 }
 
@@ -162,7 +162,7 @@ class TextBody {
         if (!one_line_each_)
             scanner.read_across_lines(
                 ", where numbers are read across lines, as " + std::to_string(line_count) +
-                " lines follow the head, but it promises " + std::to_string(element_count) + " elements");
+                " lines follow the header, but it declares " + std::to_string(element_count) + " elements");
     }
 
     void begin_element(const std::string& what) {
@@ -336,7 +336,7 @@ PolygonMesh read_body(Body&& body, const PlyHeader& header) {
             read_element(body, element, vertex_count, mesh);
         }
     if (!body.at_end())
-        body.fail(ErrorCode::Damaged, "the file goes on after the elements that its head promises");
+        body.fail(ErrorCode::Damaged, "the file continues after the elements that its header declares");
     return mesh;
 }
 

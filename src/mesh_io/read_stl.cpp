@@ -40,7 +40,7 @@ bool has_size_of_binary(const MeshSource& source) {
 
 /// @param found  the rest of the sentence
 [[noreturn]] void refuse_size(const MeshSource& source, const std::string& found) {
-    source.fail(ErrorCode::Damaged, "the head of a binary STL promises " +
+    source.fail(ErrorCode::Damaged, "the header of a binary STL declares " +
                                         std::to_string(promised_face_count(source)) + " faces in " +
                                         std::to_string(promised_size(source)) + " bytes, but " + found);
 }

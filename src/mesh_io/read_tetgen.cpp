@@ -69,8 +69,8 @@ TetrahedraInFile read_tetgen(const MeshSource& nodes, const MeshSource& elements
         for (std::uint32_t& corner : corners) corner = next_corner(scanner, first, mesh.vertices.size());
     }
     if (scanner.next_line())
-        scanner.fail(ErrorCode::Damaged, "the file goes on after the " + std::to_string(count) +
-                                             " tetrahedra that its head promises");
+        scanner.fail(ErrorCode::Damaged, "the file continues after the " + std::to_string(count) +
+                                             " tetrahedra that its header declares");
     return mesh;
 }
 

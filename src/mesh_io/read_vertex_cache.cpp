@@ -55,17 +55,16 @@ std::size_t count_samples(double seconds, double frames_per_second, std::size_t 
                         std::to_string(frames_per_second) + " frames per second too many for " +
                         std::to_string(vertex_count) + " vertices: at most " +
                         std::to_string(kMostCachePositions) +
-                        " positions are kept; take fewer frames per second or a shorter animation");
+                        " positions are kept; use fewer frames per second or a shorter animation");
     return static_cast<std::size_t>(count);
 }
 
 void require_motion(const std::vector<Vec3f>& samples, std::size_t vertex_count, const MeshSource& source) {
     for (std::size_t i = vertex_count; i < samples.size(); ++i)
         if (samples[i] != samples[i % vertex_count]) return;
-    source.fail(
-        ErrorCode::InvalidMesh,
-        "the animation moves no vertex: the mesh has no bones that it moves, and hangs on no node that "
-        "it moves; bind the mesh to the skeleton");
+    source.fail(ErrorCode::InvalidMesh,
+                "the animation moves no vertex: the mesh has no bones that it moves, and belongs to no node "
+                "that it moves; bind the mesh to the skeleton");
 }
 
 /// Do files with this ending have animations that read_animation() reads?

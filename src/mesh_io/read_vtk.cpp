@@ -95,9 +95,10 @@ class VtkReader {
             const auto array = numbers_.require_line("an array of a field");
             const std::size_t size = array.size() == 4 ? size_of_type(array[3]) : 0;
             if (size == 0)
-                numbers_.fail(ErrorCode::WrongFormat, "the array " + in_quotes(array[0]) +
-                                                          " of a field is none of numbers; save the grid "
-                                                          "without it");
+                numbers_.fail(ErrorCode::WrongFormat,
+                              "the array " + in_quotes(array[0]) +
+                                  " of a field does not contain numbers; save the grid "
+                                  "without it");
             const std::size_t component_count = count(array[1]);
             const std::size_t tuple_count = component_count == 0 ? 0 : count(array[2]);
             for (std::size_t i = 0; i < tuple_count; ++i) numbers_.skip(component_count, size);
@@ -127,7 +128,7 @@ class VtkReader {
         if (corner_counts_.size() + corners_.size() != second)
             numbers_.fail(ErrorCode::Damaged,
                           "the cells have " + std::to_string(corner_counts_.size() + corners_.size()) +
-                              " numbers, not " + std::to_string(second) + " as CELLS promises");
+                              " numbers, not " + std::to_string(second) + " as CELLS declares");
     }
 
     void read_cell_arrays(std::size_t offset_count, std::size_t corner_count) {
@@ -143,7 +144,7 @@ class VtkReader {
         if (last != corner_count)
             numbers_.fail(ErrorCode::Damaged, "the offsets of cells end at " + std::to_string(last) +
                                                   ", not at " + std::to_string(corner_count) +
-                                                  " as CELLS promises");
+                                                  " as CELLS declares");
         const NumberType corner_type = array_type("CONNECTIVITY");
         for (std::size_t i = 0; i < corner_count; ++i) corners_.push_back(corner(corner_type));
     }
@@ -172,9 +173,10 @@ class VtkReader {
         for (std::size_t i = 0; i < corner_counts_.size(); ++i) {
             types_.push_back(numbers_.integer(NumberType::Int32, "the type of a cell"));
             if (types_.back() == kVtkTetrahedron ? corner_counts_[i] != 4 : !is_flat(types_.back()))
-                numbers_.fail(ErrorCode::WrongFormat,
-                              "cell " + std::to_string(i) + " of type " + std::to_string(types_.back()) +
-                                  " is no tetrahedron of four corners; save the body as linear tetrahedra");
+                numbers_.fail(
+                    ErrorCode::WrongFormat,
+                    "cell " + std::to_string(i) + " of type " + std::to_string(types_.back()) +
+                        " is not a tetrahedron with four corners; save the body as linear tetrahedra");
         }
     }
 

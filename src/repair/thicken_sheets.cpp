@@ -34,8 +34,8 @@ void require_suitable(const TriangleMesh& mesh, double thickness) {
     const double least = std::max(radius * 0x1p-15, farthest * 0x1p-20); // 16 steps of a map or of floats
     if (thickness >= least && thickness <= radius) return;
     throw Error(ErrorCode::InvalidOptions,
-                "sheets cannot get the thickness " + number_text(thickness) + "; for this mesh it must be " +
-                    number_text(least) + " to " + number_text(radius) +
+                "sheets cannot be given the thickness " + number_text(thickness) +
+                    "; for this mesh it must be " + number_text(least) + " to " + number_text(radius) +
                     ", from what its coordinates resolve to the radius of its bounding sphere");
 }
 

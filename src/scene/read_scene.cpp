@@ -616,7 +616,7 @@ std::string read_text(const fs::path& path) {
         throw Error(ErrorCode::Unreadable, path.string() + ": cannot be read, or does not exist");
     text.resize(static_cast<std::size_t>(file.gcount()));
     if (text.size() > kLargest)
-        throw Error(ErrorCode::InvalidScene, path.string() + ": is larger than 1 MB, which no scene is");
+        throw Error(ErrorCode::InvalidScene, path.string() + ": is larger than 1 MB, the limit for a scene");
     return text;
 }
 

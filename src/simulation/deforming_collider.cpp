@@ -78,12 +78,12 @@ void DeformingCollider::lead_to(std::span<const Vec3f> vertices_local) {
     if (vertices_local.size() != vertices_.size())
         throw Error(ErrorCode::InvalidOptions,
                     name_ + " has " + std::to_string(vertices_.size()) +
-                        " vertices, and was given places for " + std::to_string(vertices_local.size()) +
+                        " vertices, and was given positions for " + std::to_string(vertices_local.size()) +
                         "; a model deforms with the faces and vertices that it has");
     for (std::size_t i = 0; i < vertices_local.size(); ++i)
         if (!is_finite(vertices_local[i]))
             throw Error(ErrorCode::InvalidOptions,
-                        name_ + ": the place of vertex " + std::to_string(i) + " is not finite");
+                        name_ + ": the position of vertex " + std::to_string(i) + " is not finite");
     next_map_ = naming_it(", with the vertices that it was given", [&] { return built_of(vertices_local); });
     next_vertices_.assign(vertices_local.begin(), vertices_local.end());
 }

@@ -133,7 +133,8 @@ void Solver::set_free(std::size_t collider, double mass) {
     require_option(options.kind() == SolverKind::Newton,
                    name + " cannot be free under the jakobsen solver, which measures no loads; use newton");
     const ExactMap* const map = map_of_surface(colliders[collider]);
-    require_option(map != nullptr, name + " has no exact map, of which its centre of mass and inertia are");
+    require_option(map != nullptr,
+                   name + " has no exact map, which determines its centre of mass and inertia");
     motions.set_free(collider, RigidBody(model_mesh(map->view(), colliders[collider].scale), mass,
                                          colliders[collider], name));
 }
@@ -150,10 +151,9 @@ void Solver::lead_surface(std::size_t collider, const Lead& lead) {
                     name + " cannot deform under the jakobsen solver; use another solver for this scene");
     if (exact == nullptr || !options.surfaces_collide())
         throw Error(ErrorCode::InvalidOptions,
-                    name + (exact == nullptr
-                                ? " has no exact map, which a model that deforms needs"
-                                : " cannot deform where only particles collide, which faces that "
-                                  "move may pass; let surfaces collide"));
+                    name + (exact == nullptr ? " has no exact map, which a model that deforms needs"
+                                             : " cannot deform where only particles collide, since moving "
+                                               "faces may pass particles; let surfaces collide"));
     surface.emplace(*exact, name);
     try {
         lead(*surface);

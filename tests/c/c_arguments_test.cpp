@@ -56,7 +56,7 @@ TEST(CErrors, TellWhenMemoryDoesNotSuffice) {
     const std::uint32_t corners[3] = {};
     CMesh mesh;
     expect_refused(echinus_mesh_create(point, std::size_t{1} << 55, 0, corners, 1, out(mesh)),
-                   ECHINUS_OUT_OF_MEMORY, "echinus_mesh_create: memory did not suffice");
+                   ECHINUS_OUT_OF_MEMORY, "echinus_mesh_create: out of memory");
     EXPECT_EQ(mesh, nullptr);
 }
 #endif

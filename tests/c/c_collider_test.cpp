@@ -185,7 +185,7 @@ TEST(CCustomMaps, AnswerThroughColliders) {
         std::uint8_t inside = 0;
         const float point[3] = {};
         expect_refused(echinus_map_contains(map.get(), point, 1, 0, 1, &inside), ECHINUS_INVALID_ARGUMENT,
-                       "only colliders can ask");
+                       "only colliders can query");
         expect_refused(echinus_map_save(map.get(), "x.ech"), ECHINUS_INVALID_ARGUMENT, "no bytes to write");
         echinus_map_info info{};
         info.size = sizeof info;

@@ -275,11 +275,11 @@ TEST(ExactMapFile, NamesWhatContradictsTheMeaning) {
          [&](Parts& p) {
              p.border = {{0, 40, 1}};
          }},
-        {"border[0] is no edge",
+        {"border[0] is not an edge",
          [&](Parts& p) {
              p.border = {{0, 1, 0}};
          }},
-        {"border[0] is no edge",
+        {"border[0] is not an edge",
          [&](Parts& p) {
              p.border = {{1, 1, 1}};
          }},
@@ -301,10 +301,10 @@ TEST(ExactMapFile, NamesWhatContradictsTheMeaning) {
         {"winding_below[0] makes its band", [&](Parts& p) { p.winding_below[0] = ExactMapView::kSplit; }},
         {"winding_below[4] is uncertain", [&](Parts& p) { p.winding_below[4] = ExactMapView::kUncertain; }},
         {"nodes has no elements", [&](Parts& p) { p.nodes.clear(); }},
-        {"is no child of an earlier one", [&](Parts& p) { p.nodes.push_back(p.nodes.back()); }},
+        {"is not a child of an earlier one", [&](Parts& p) { p.nodes.push_back(p.nodes.back()); }},
         {"the tree misses leaf", [&](Parts& p) { mark_as_none(p.nodes[1], 3); }},
-        {"neither a child nor the mark of none", [&](Parts& p) { p.nodes[0].low[0][0] = 32767; }},
-        {"neither a child nor the mark of none", [&](Parts& p) { p.nodes[0].children[7] = 1; }},
+        {"neither a child nor the marker for no child", [&](Parts& p) { p.nodes[0].low[0][0] = 32767; }},
+        {"neither a child nor the marker for no child", [&](Parts& p) { p.nodes[0].children[7] = 1; }},
         {"not a later node", [&](Parts& p) { p.nodes[0].children[0] = 0; }},
         {"not a later node", [&](Parts& p) { p.nodes[0].children[0] = 99; }},
         {"not a leaf that has no parent yet",
@@ -330,7 +330,7 @@ TEST(ExactMapFile, NamesWhatContradictsTheMeaning) {
         // A build that made it would not hand it out.
         const auto prove = [&] { proven(map.view(), map.statistics(), 0, nullptr); };
         expect_error(ErrorCode::Damaged, spoilt.words, prove);
-        expect_error(ErrorCode::Damaged, "fault of Echinus", prove);
+        expect_error(ErrorCode::Damaged, "bug in Echinus", prove);
     }
 }
 

@@ -289,7 +289,7 @@ TEST(MapFile, NamesWhatContradictsTheMeaning) {
         // A build that made it would not hand it out.
         const auto prove = [&] { proven(map.view(), map.statistics(), 0, nullptr); };
         expect_error(ErrorCode::Damaged, spoilt.words, prove);
-        expect_error(ErrorCode::Damaged, "fault of Echinus", prove);
+        expect_error(ErrorCode::Damaged, "bug in Echinus", prove);
     }
 }
 

@@ -181,7 +181,7 @@ TEST_F(Read3ds, RefusesAnAnimationThatItCannotFollow) {
         expect_error(ErrorCode::InvalidMesh, sentence, [&] { read_cache(file_of(object(kBox), nodes)); });
     };
     expect_unfollowed("the file has no animation", node(0, "box", kNoParent, kQuarter));
-    const std::string words_of_parent = "the keyframes of the object 'box' hang on a light";
+    const std::string words_of_parent = "the keyframes of the object 'box' belong to a node below a light";
     expect_unfollowed(words_of_parent, chunk(0xB003, chunk(0xB030, words({0}))) + node(1, "box", 0, kRises));
     expect_unfollowed(words_of_parent, node(0, "box", 0, kRises));
 }

@@ -72,8 +72,8 @@ TEST(ReadObj, PassesOverPathsWithBackslashesButNotOverTheNextStatement) {
                   .corners,
               (Indices{0, 1, 2}));
     expect_obj_error(ErrorCode::Damaged,
-                     "line 1: 'usemtl' goes on in the next line, as the backslash at the end of its own "
-                     "says, but there 'v' follows; remove the backslash",
+                     "line 1: 'usemtl' continues on the next line, as the backslash at its end says, but "
+                     "there 'v' follows; remove the backslash",
                      "usemtl C:\\mats\\\n" + kSquare);
     expect_obj_error(ErrorCode::Damaged, "line 5: 'g' goes on", kSquare + "g a\\\nf 1 2 3\n");
     expect_obj_error(ErrorCode::Damaged, "line 1: 'v' goes on", "v 0 0 0\\\n" + kSquare);
@@ -82,7 +82,7 @@ TEST(ReadObj, PassesOverPathsWithBackslashesButNotOverTheNextStatement) {
 }
 
 TEST(ReadObj, RefusesToLeaveOutWhatAnotherFileHas) {
-    expect_obj_error(ErrorCode::WrongFormat, "line 5: 'call' takes statements from another file",
+    expect_obj_error(ErrorCode::WrongFormat, "line 5: 'call' includes statements from another file",
                      kSquare + "call b.obj\n");
 }
 
@@ -139,7 +139,7 @@ TEST(ReadObj, NamesTheLineOfAFaceWithTooFewVertices) {
 }
 
 TEST(ReadObj, RefusesAFileOfAnotherKind) {
-    expect_obj_error(ErrorCode::WrongFormat, "line 1: '?PNG' is no statement", "\x89PNG\r\n\x1a\n");
-    expect_obj_error(ErrorCode::WrongFormat, "line 1: '{\"asset\":' is no statement", "{\"asset\": {}}");
-    expect_obj_error(ErrorCode::WrongFormat, "line 1: 'OFF' is no statement", "OFF\n4 4 0\n");
+    expect_obj_error(ErrorCode::WrongFormat, "line 1: '?PNG' is not a statement", "\x89PNG\r\n\x1a\n");
+    expect_obj_error(ErrorCode::WrongFormat, "line 1: '{\"asset\":' is not a statement", "{\"asset\": {}}");
+    expect_obj_error(ErrorCode::WrongFormat, "line 1: 'OFF' is not a statement", "OFF\n4 4 0\n");
 }

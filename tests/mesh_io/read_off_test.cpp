@@ -54,7 +54,7 @@ TEST(ReadOff, ReadsNumbersAcrossLinesWhereTheLinesAreNotAsManyAsVerticesAndFaces
     EXPECT_EQ(mesh.corner_counts, (Indices{4, 3}));
     expect_off_error(ErrorCode::Damaged,
                      "line 3: a coordinate was expected, not 'x', where numbers are read across "
-                     "lines, as 3 lines follow the head, but it promises 5 vertices and faces",
+                     "lines, as 3 lines follow the header, but it declares 5 vertices and faces",
                      "OFF\n4 1 0\n0 0 0 1 0 x\n1 1 0 0 1 0\n3 0 1 2\n");
 }
 
@@ -93,7 +93,7 @@ TEST(ReadOff, NoticesMissingAndSurplusLines) {
     expect_off_error(ErrorCode::Damaged, "the file ends where face 2 of 2 was expected",
                      "OFF\n4 2 0\n" + kVertices + "3 0 1 2\n");
     expect_off_error(ErrorCode::Damaged, "the file ends where the number of vertices was expected", "OFF\n");
-    expect_off_error(ErrorCode::Damaged, "line 8: the file goes on after the 1 faces",
+    expect_off_error(ErrorCode::Damaged, "line 8: the file continues after the 1 faces",
                      "OFF\n4 1 0\n" + kVertices + "3 0 1 2\n3 0 2 3\n");
     expect_off_error(ErrorCode::Damaged, "line 7: a vertex number was expected, not the end of the line",
                      "OFF\n4 1 0\n" + kVertices + "3 0 1\n");

@@ -115,12 +115,12 @@ TEST(ReadPly, NoticesMissingAndSurplusData) {
     expect_ply_error(ErrorCode::Damaged, "a.ply: line 13: an integer was expected, not the end of the line",
                      kText + kThreeVertices + "3 0 1\n");
     expect_ply_error(ErrorCode::Damaged,
-                     "a.ply: line 14: the file goes on after the elements that its head promises",
+                     "a.ply: line 14: the file continues after the elements that its header declares",
                      kText + kThreeVertices + "3 0 1 2\n3 0 1 2\n");
     const std::string binary = binary_triangle(false);
     expect_ply_error(ErrorCode::Damaged, "a.ply: the file ends at byte " + std::to_string(binary.size() - 1),
                      binary.substr(0, binary.size() - 1));
-    expect_ply_error(ErrorCode::Damaged, "a.ply: the file goes on", binary + "x");
+    expect_ply_error(ErrorCode::Damaged, "a.ply: the file continues", binary + "x");
     EXPECT_NO_THROW(read_ply_text(binary + "\n"));
     EXPECT_NO_THROW(read_ply_text(binary + "\r\n\x1a" + std::string(100, '\0')));
 }
@@ -141,10 +141,11 @@ TEST(ReadPly, ReadsNumbersAcrossLinesWhereTheLinesAreNotAsManyAsTheElements) {
         EXPECT_EQ(mesh.vertices, (std::vector<Vec3d>{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}})) << lines;
         EXPECT_EQ(mesh.corners, (Indices{0, 1, 2})) << lines;
     }
-    expect_ply_error(ErrorCode::Damaged,
-                     "a.ply: line 10: the file goes on after the elements that its head promises, where "
-                     "numbers are read across lines, as 1 lines follow the head, but it promises 4 elements",
-                     kText + "0 0 0 1 0 0 0 1 0 3 0 1 2 5\n");
+    expect_ply_error(
+        ErrorCode::Damaged,
+        "a.ply: line 10: the file continues after the elements that its header declares, where "
+        "numbers are read across lines, as 1 lines follow the header, but it declares 4 elements",
+        kText + "0 0 0 1 0 0 0 1 0 3 0 1 2 5\n");
     expect_ply_error(ErrorCode::Damaged, "a.ply: the file ends where an integer was expected",
                      kText + "0 0 0 1 0 0 0 1 0 3 0 1\n");
 }
@@ -231,7 +232,7 @@ TEST(ReadPly, RefusesAHeadThatMakesNoSense) {
                      "ply\nformat ascii 1.0\nelement vertex 3\n");
     expect_ply_error(ErrorCode::Damaged, "a.ply: line 3: 'property' has no meaning here",
                      "ply\nformat ascii 1.0\nproperty float x\n");
-    expect_ply_error(ErrorCode::Damaged, "a.ply: line 4: 'quad' is no type",
+    expect_ply_error(ErrorCode::Damaged, "a.ply: line 4: 'quad' is not a type",
                      "ply\nformat ascii 1.0\nelement vertex 3\nproperty quad x\n");
     expect_ply_error(ErrorCode::Damaged, "a.ply: line 4: the length of a list",
                      "ply\nformat ascii 1.0\nelement vertex 3\nproperty list float int x\n");

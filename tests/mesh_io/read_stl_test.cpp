@@ -97,31 +97,33 @@ TEST(ReadStl, PassesOverBytesAfterTheFacesThatCannotBeFaces) {
 
 TEST(ReadStl, RefusesBytesAfterTheFacesThatCouldBeFaces) {
     const std::string box = binary_box();
-    expect_stl_error(ErrorCode::Damaged,
-                     "the head of a binary STL promises 12 faces in 684 bytes, but 100 more follow, room for "
-                     "2 faces; write the file again",
-                     box + std::string(100, 'x'));
     expect_stl_error(
         ErrorCode::Damaged,
-        "the head of a binary STL promises 12 faces in 684 bytes, but another binary STL follows", box + box);
+        "the header of a binary STL declares 12 faces in 684 bytes, but 100 more follow, room for "
+        "2 faces; write the file again",
+        box + std::string(100, 'x'));
+    expect_stl_error(
+        ErrorCode::Damaged,
+        "the header of a binary STL declares 12 faces in 684 bytes, but another binary STL follows",
+        box + box);
     std::string fewer = box;
     fewer[80] = 11;
     expect_stl_error(ErrorCode::Damaged,
-                     "the head of a binary STL promises 11 faces in 634 bytes, but 50 more follow", fewer);
+                     "the header of a binary STL declares 11 faces in 634 bytes, but 50 more follow", fewer);
     fewer[80] = 0;
     expect_stl_error(
         ErrorCode::Damaged,
-        "the head of a binary STL promises 0 faces in 84 bytes, but 600 more follow, room for 12 faces",
+        "the header of a binary STL declares 0 faces in 84 bytes, but 600 more follow, room for 12 faces",
         fewer);
     expect_stl_error(ErrorCode::Damaged,
-                     "the head of a binary STL promises 0 faces in 84 bytes, but 602 more follow",
+                     "the header of a binary STL declares 0 faces in 84 bytes, but 602 more follow",
                      fewer + "xx");
 }
 
 TEST(ReadStl, NoticesMissingAndSurplusData) {
     const std::string box = binary_box();
     expect_stl_error(ErrorCode::Damaged,
-                     "the head of a binary STL promises 12 faces in 684 bytes, but the file has 683",
+                     "the header of a binary STL declares 12 faces in 684 bytes, but the file has 683",
                      box.substr(0, 683));
     expect_stl_error(ErrorCode::Damaged, "the file ends where 'facet' or 'endsolid' was expected",
                      "solid a\n" + kFacet);
@@ -153,7 +155,7 @@ TEST(ReadStl, RefusesOtherFormats) {
     for (const std::string& bytes :
          {std::string("\x89PNG\r\n\x1a\n"), std::string(200, 'x'), "<html>\n" + std::string(99, ' ')})
         expect_stl_error(ErrorCode::WrongFormat, "the file begins neither with 'solid'", bytes);
-    expect_stl_error(ErrorCode::Damaged, "the head of a binary STL promises", std::string(200, '\1'));
+    expect_stl_error(ErrorCode::Damaged, "the header of a binary STL declares", std::string(200, '\1'));
     expect_stl_error(ErrorCode::WrongFormat, "the text is UTF-16",
                      std::string("\xff\xfes\0o\0l\0i\0d\0", 12));
 }

@@ -137,7 +137,7 @@ TEST_F(ReadTetrahedra, NamesTheLineAndTheRemedyInText) {
     expect_refused("a.msh", with_replaced(msh, "1 11 21 31\n", "1 11 21 32\n"), ErrorCode::InvalidMesh,
                    "node 32, which does not exist");
     expect_refused("a.msh", with_replaced(msh, "3 4 2 1 1", "3 5 2 1 1"), ErrorCode::WrongFormat,
-                   "type 5 is no tetrahedron");
+                   "type 5 is not a tetrahedron");
     expect_refused("a.vtk", with_replaced(vtk, "# vtk", "#vtk"), ErrorCode::WrongFormat,
                    "XML files are not read");
     expect_refused("a.vtk", with_replaced(vtk, "UNSTRUCTURED_GRID", "POLYDATA"), ErrorCode::WrongFormat,
@@ -175,7 +175,7 @@ TEST_F(ReadTetrahedra, NamesTheLineOfTetGensFiles) {
            "refers to point -922");
     expect(node, with_replaced(ele, "1 4 0", "1 10 0"), ErrorCode::WrongFormat, "run TetGen without -o2");
     expect(node, with_replaced(ele, "1 4 0", "2 4 0"), ErrorCode::Damaged, "tetrahedron 2 of 2");
-    expect(node, ele + "1 0 1 2 3\n", ErrorCode::Damaged, "goes on after the 1 tetrahedra");
+    expect(node, ele + "1 0 1 2 3\n", ErrorCode::Damaged, "continues after the 1 tetrahedra");
     expect(node, with_replaced(ele, "\n0 ", "\n1 "), ErrorCode::Damaged, "number should be 0, not 1");
     expect_of_nodes(with_replaced(node, "4 3", "4 2"), "the dimension should be 3");
     expect_of_nodes(with_replaced(node, "\n0 ", "\n2 "), "numbered from 0 or 1");
@@ -202,7 +202,7 @@ TEST_F(ReadTetrahedra, PassesOverFieldsAndMetadataBetweenTheParts) {
         return with_replaced(text, "POINTS", field + "POINTS");
     };
     expect_refused("a.vtk", with_field("FIELD f 1\nnames 1 1 string\nx\n"), ErrorCode::WrongFormat,
-                   "the array 'names' of a field is none of numbers");
+                   "the array 'names' of a field does not contain numbers");
     expect_refused("a.vtk", with_field("FIELD f 2\na 1 1 int\n3\n"), ErrorCode::WrongFormat, "'POINTS'");
     expect_refused("a.vtk", with_field("FIELD f 1\na 4294967295 4294967295 int\n"), ErrorCode::Damaged,
                    "a number was expected");

@@ -689,7 +689,7 @@ def test_a_manifest_that_is_none_is_an_error_that_names_its_line(folder, tmp_pat
     manifest = tmp_path / "manifest.jsonl"
     manifest.write_bytes(manifest.read_bytes().splitlines(keepends=True)[0] + b"\xff garbage\n")
     for run in (corpus.label, corpus.verify):
-        with pytest.raises(ValueError, match="manifest.jsonl, line 2 is no record"):
+        with pytest.raises(ValueError, match="manifest.jsonl, line 2 is not a record"):
             run(corpus_of(folder, tmp_path))
 
 
@@ -702,14 +702,14 @@ def test_a_line_of_a_manifest_that_is_json_but_no_record_is_named(folder, tmp_pa
     for lines, number in ((f"{line}\n", 1), (f"{settings}\n{line}\n", 2)):
         (tmp_path / "manifest.jsonl").write_text(lines)
         for run in (corpus.label, corpus.verify):
-            with pytest.raises(ValueError, match=f"manifest.jsonl, line {number} is no record .*remove the file"):
+            with pytest.raises(ValueError, match=f"manifest.jsonl, line {number} is not a record .*remove the file"):
                 run(c)
 
 
 def test_a_manifest_that_is_no_file_is_an_error(folder, tmp_path):
     os.mkfifo(tmp_path / "manifest.jsonl")  # nobody writes to it
     for run in (corpus.label, corpus.verify):
-        with pytest.raises(ValueError, match="manifest.jsonl is no file; remove it, or choose another folder"):
+        with pytest.raises(ValueError, match="manifest.jsonl is not a file; remove it, or choose another folder"):
             run(corpus_of(folder, tmp_path))
 
 
@@ -871,7 +871,7 @@ def test_what_is_no_file_is_refused_and_not_waited_for(folder, tmp_path):
     ech.write_mesh(meshes / "torus.obj", torus())
     summary = corpus.label(corpus_of(meshes, tmp_path / "out"), workers=1)
     assert (summary.labelled, summary.refused) == (1, 1)
-    assert "pipe.obj: it is no file" in (tmp_path / "out" / "manifest.jsonl").read_text()
+    assert "pipe.obj: it is not a file" in (tmp_path / "out" / "manifest.jsonl").read_text()
 
 
 def test_a_run_without_work_or_workers_is_an_error(folder, tmp_path):
@@ -892,7 +892,7 @@ def test_a_run_without_work_or_workers_is_an_error(folder, tmp_path):
 def test_a_list_that_is_no_text_is_named(tmp_path):
     for content in ("meshes/é.obj\n".encode("latin-1"), "a.obj\n".encode("utf-16"), "a.obj\n".encode("utf-16-be")):
         (tmp_path / "list.txt").write_bytes(content)
-        with pytest.raises(ValueError, match="list.txt is no text.* a list of meshes has a path a line"):
+        with pytest.raises(ValueError, match="list.txt is not text.* a list of meshes has one path per line"):
             corpus.find_meshes([tmp_path / "list.txt"])
     (tmp_path / "list.txt").write_bytes("\ufeffa.obj\n".encode())  # as some editors begin UTF-8
     assert corpus.find_meshes([tmp_path / "list.txt"]) == [("a", str(tmp_path / "a.obj"))]
@@ -991,15 +991,15 @@ def test_a_cluster_that_goes_ends_the_run_with_a_sentence_and_the_next_run_goes_
         finally:
             os.killpg(cluster.pid, signal.SIGKILL)
     said = run.communicate(timeout=120)[1]
-    assert run.returncode == 1 and f"the cluster at {address} has gone; the same command goes on from here" in said
+    assert run.returncode == 1 and f"the cluster at {address} has gone; the same command continues from here" in said
     assert "Traceback" not in said and not (tmp_path / "labels" / "manifest.jsonl").exists()
     subprocess.run([*command, "9"], check=True, capture_output=True)
 
 
 @pytest.mark.parametrize("address, code, words", [
-    ("foo", 2, "scheduler 'foo' is no address, for instance tcp://host:8786"),
-    ("", 2, "scheduler '' is no address"),
-    ("http://localhost:1", 2, "scheduler 'http://localhost:1' is no address"),
+    ("foo", 2, "scheduler 'foo' is not an address, for instance tcp://host:8786"),
+    ("", 2, "scheduler '' is not an address"),
+    ("http://localhost:1", 2, "scheduler 'http://localhost:1' is not an address"),
     ("tcp://127.0.0.1:1", 1, "scheduler tcp://127.0.0.1:1 does not answer"),
 ])
 @pytest.mark.seldom

@@ -80,7 +80,7 @@ def test_a_sweep_broadcasts_its_ends():
     hits = EXACT_TORUS.sweep([0, 0, 0], ends)
     assert (hits.array == EXACT_TORUS.sweep(np.zeros_like(ends), ends, threads=0).array).all()
     assert EXACT_TORUS.sweep(np.zeros((4, 1, 3)), np.zeros((5, 3))).fraction.shape == (4, 5)
-    with pytest.raises(ValueError, match=r"start and end must have shapes that fit each other, not \(4, 3\) and \(5, 3\)"):
+    with pytest.raises(ValueError, match=r"start and end must have compatible shapes, not \(4, 3\) and \(5, 3\)"):
         EXACT_TORUS.sweep(np.zeros((4, 3)), np.zeros((5, 3)))
 
 

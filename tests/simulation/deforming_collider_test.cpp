@@ -373,12 +373,12 @@ TEST(DeformingCollider, RefusesOtherTopologiesAndKeepsWhatItHas) {
     const std::string count = std::to_string(ball.vertices.size());
     std::vector<Vec3f> places = ball.vertices;
     places.pop_back();
-    refuse("collider 0 has " + count + " vertices, and was given places for " +
+    refuse("collider 0 has " + count + " vertices, and was given positions for " +
                std::to_string(ball.vertices.size() - 1),
            [&] { simulation.set_collider_vertices(0, places); });
     places = ball.vertices;
     places[3].y = std::numeric_limits<float>::quiet_NaN();
-    refuse("the place of vertex 3 is not finite", [&] { simulation.set_collider_vertices(0, places); });
+    refuse("the position of vertex 3 is not finite", [&] { simulation.set_collider_vertices(0, places); });
     const auto samples = std::make_shared<std::vector<Vec3f>>(ball.vertices);
     refuse("a cache must belong to the same mesh",
            [&] { simulation.set_collider_cache(0, {.vertex_count = 7, .samples = samples}); });

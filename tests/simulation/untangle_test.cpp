@@ -238,7 +238,7 @@ TEST(Untangle, MovesNoPinnedParticleAndNamesWhatThatLeaves) {
         ErrorCode::InvalidOptions,
         "25 particles begin inside collider 0, 25 of them pinned there; untangle could not move "
         "them out; the "
-        "first is particle 0; move the start until they are apart, or do without collision of surfaces",
+        "first is particle 0; move the deformable until they are apart, or do without collision of surfaces",
         [&] { Simulation(inside, ball, kUntangled); });
 }
 

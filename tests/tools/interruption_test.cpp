@@ -157,7 +157,7 @@ TEST_F(Interruption, IsNotNeededForInputWithoutEnd) {
         fs::create_symlink("/dev/zero", path(name));
     expect_failure(1, "line 1: the line has control characters", {"info", "zero.obj"});
     expect_failure(1, "line 1: the line has control characters", {"build", "zero.ply", "-o", "map.ech"});
-    expect_failure(1, "promises 0 faces in 84 bytes, but the file has more", {"info", "zero.stl"});
+    expect_failure(1, "declares 0 faces in 84 bytes, but the file has more", {"info", "zero.stl"});
     expect_failure(1, "larger than 1 MB", {"simulate", "zero.json", "-o", "out"});
     write("box.obj", echinus::test::box_text());
     expect_success({"build", "box.obj", "-o", "box.ech"});

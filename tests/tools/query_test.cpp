@@ -223,9 +223,9 @@ TEST_F(QueryCommand, RefusesPointsThatItCannotRead) {
     refuse("bad.npy", "", "not a .npy file");
     refuse("bad.npy", "1,2,3\n", "not a .npy file");
     refuse("bad.npy", npy_text(kThreePoints).substr(0, 150),
-           "its header promises 5 points, but the file ends before");
+           "its header declares 5 points, but the file ends before");
     refuse("bad.npy", npy_text(kThreePoints) + "x",
-           "its header promises 5 points, but the file continues after them");
+           "its header declares 5 points, but the file continues after them");
     refuse("bad.csv", "", "it contains neither points nor a line of names");
     refuse("bad.csv", "1,2,3\n1,2\n", "line 2");
     refuse("bad.txt", "{\"x\": 1}\n", "line 1");

@@ -196,7 +196,7 @@ namespace {
 
 [[noreturn]] void fail_count(const Input& input, std::uint64_t promised_count, const char* finding) {
     input.fail(ErrorCode::Damaged,
-               "its header promises " + std::to_string(promised_count) + " points, but the file " + finding);
+               "its header declares " + std::to_string(promised_count) + " points, but the file " + finding);
 }
 
 void require_end(Input& input, std::uint64_t promised_count) {
@@ -231,7 +231,7 @@ class RowSource final : public PointSource {
     std::vector<echinus::Vec3<T>> rows_;
 };
 
-/// One column of the Fortran order. Grows with what the file holds, not with what its header promises.
+/// One column of the Fortran order. Grows with what the file holds, not with what its header declares.
 template <typename T>
 std::vector<T> read_column(Input& input, std::uint64_t count) {
     constexpr std::uint64_t kBlock = std::uint64_t{1} << 18;

@@ -143,7 +143,7 @@ PLACES = re.compile(r"(: (face|particle|the edge) |; the first is particle ).*")
 
 def in_words_of_the_panel(sentence, cloth_name):
     """Sentences that name the cloth, and the remedy where its start intersects something."""
-    what, is_start, remedy = sentence.partition("; move the start until they are apart")
+    what, is_start, remedy = sentence.partition("; move the deformable until they are apart")
     if not is_start:
         return f"{cloth_name}: {sentence}"
     what = re.sub(r"( in \d+ pairs?)\b", r"\1 of faces", PLACES.sub("", what))

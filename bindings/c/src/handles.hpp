@@ -121,7 +121,7 @@ void with_map(const echinus_map* map, const Body& body) {
     const ColliderMap::Kind& kind = at(map, "map").value.kind;
     if (const auto* exact = std::get_if<ExactMap>(&kind)) return body(*exact);
     if (const auto* distance = std::get_if<DistanceMap>(&kind)) return body(*distance);
-    throw WrongArgument("map is a custom map, which only colliders can ask");
+    throw WrongArgument("map is a custom map, which only colliders can query");
 }
 
 /// A margin, a reach or another length to look for.

@@ -64,7 +64,7 @@ echinus_status note(echinus_status status, std::string_view function, std::strin
 }
 
 constexpr std::string_view kOutOfMemory =
-    "memory did not suffice; destroy what is no longer needed, or take a smaller model or map";
+    "out of memory; destroy objects that are no longer needed, or use a smaller model or map";
 
 } // namespace
 

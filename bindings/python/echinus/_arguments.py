@@ -108,7 +108,7 @@ def path_of(value: Any) -> str:
         raise TypeError(f"a path must be a str or os.PathLike, not {kind_name(value)}")
     path = os.fsdecode(value)
     if "\0" in path:
-        raise ValueError(f"a path must have no null byte: {path!r}")
+        raise ValueError(f"a path must not contain a null byte: {path!r}")
     return path
 
 

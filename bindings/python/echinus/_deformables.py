@@ -196,7 +196,7 @@ def make_soft_body(
         ``invalid_options`` for numbers out of range and vertices that the mesh does not have.
     """
     options = locals()
-    body = of_kind("mesh", mesh, TetrahedralMesh, "; of a surface, tetrahedralize() makes one")
+    body = of_kind("mesh", mesh, TetrahedralMesh, "; tetrahedralize() makes one from a surface")
     return Deformable._of(_core.make_soft_body(body.vertices, body.tetrahedra, options))
 
 

@@ -415,7 +415,7 @@ class ExactMap(_Map[_core.ExactMap]):
             try:
                 start, end = np.broadcast_arrays(start, end)
             except ValueError:
-                raise ValueError(f"start and end must have shapes that fit each other, not {start.shape} and {end.shape}") from None
+                raise ValueError(f"start and end must have compatible shapes, not {start.shape} and {end.shape}") from None
         return SweepHits(self._built.sweep(start, end, threads_of(threads)), self._built.origin)
 
     @property

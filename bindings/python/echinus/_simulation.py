@@ -554,8 +554,7 @@ def _one_for_each(model: _Model | Sequence[_Model], collider_count: int) -> list
     models = list(model) if isinstance(model, (list, tuple)) else [model]
     if len(models) != collider_count:
         raise ValueError(
-            f"the scene has {collider_count} colliders, and model has {len(models)}: give a list with one for each, None"
-            " where the scene's own is meant"
+            f"the scene has {collider_count} colliders, and model has {len(models)}: pass a list with one for each, and None for the scene's own"
         )
     return models
 

@@ -318,5 +318,5 @@ def embed(mesh: TetrahedralMesh, points: ArrayLike, *, threads: int = 0) -> Embe
 
 
 def _arrays_of(mesh: TetrahedralMesh) -> tuple[NDArray[np.float32] | NDArray[np.float64], NDArray[np.uint32]]:
-    of_kind("mesh", mesh, TetrahedralMesh, "; of a surface, tetrahedralize() makes one")
+    of_kind("mesh", mesh, TetrahedralMesh, "; tetrahedralize() makes one from a surface")
     return mesh.vertices, mesh.tetrahedra

@@ -285,7 +285,7 @@ std::vector<std::uint32_t> whole_numbers(const py::object& numbers, const char* 
         const std::int64_t value = values.data()[i];
         if (!is_index(value))
             throw py::value_error(std::string(name) + " has the number " + std::to_string(value) +
-                                  ", which is no index");
+                                  ", which is not an index");
         result.push_back(static_cast<std::uint32_t>(value));
     }
     return result;

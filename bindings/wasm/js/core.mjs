@@ -9,7 +9,7 @@ export const textOf = (bytes) => fromUtf8.decode(Uint8Array.from(bytes));
 
 const OK = 0;
 const OUT_OF_MEMORY = 101; // ECHINUS_OUT_OF_MEMORY
-const outOfMemory = () => new EchinusError('OutOfMemory', "the module's memory does not suffice; delete() what is no longer needed, or take a smaller model or map");
+const outOfMemory = () => new EchinusError('OutOfMemory', "the module is out of memory; delete() objects that are no longer needed, or use a smaller model or map");
 
 /** Of one number or struct. */
 const bytesOf = (kind) => kind.bytes ?? Number(/\d+$/.exec(kind)[0]) / 8;

@@ -216,7 +216,7 @@ void MapMaker::snap(std::span<const Vec3f> vertices) {
     if (lattice_.faces.empty())
         throw Error(ErrorCode::InvalidMesh, "no face is larger than a step of the lattice, " +
                                                 number_text(lattice_.frame.step) +
-                                                ": the mesh is a few specks in a large void");
+                                                ": the mesh consists of tiny parts that are far apart");
     dropped_faces_ = faces_.size() - lattice_.faces.size();
     if (dropped_faces_ != 0) add_collapsed_faces();
 }

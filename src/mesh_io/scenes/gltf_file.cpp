@@ -70,7 +70,7 @@ class StrictPass : public nlohmann::json_sax<json> {
     void open() {
         constexpr int kMostBrackets = 256;
         if (++depth_ > kMostBrackets)
-            source_.fail(ErrorCode::Damaged, "the JSON has too many brackets in brackets, of which at most " +
+            source_.fail(ErrorCode::Damaged, "the JSON has too many nested brackets, of which at most " +
                                                  std::to_string(kMostBrackets) + " are read");
     }
 
@@ -109,7 +109,7 @@ GlbChunks chunks_of(const MeshSource& source) {
                                             " bytes, but it has " + std::to_string(source.bytes.size()));
     const std::size_t text_length = head.next<std::uint32_t>();
     if (source.bytes.substr(head.offset(), 4) != "JSON")
-        source.fail(ErrorCode::Damaged, "the first chunk of the file is no JSON");
+        source.fail(ErrorCode::Damaged, "the first chunk of the file is not JSON");
     head.skip(4);
     const std::size_t begin = head.offset();
     head.skip(text_length);
@@ -152,7 +152,7 @@ std::string base64_decoded(std::string_view text, const GltfValue& buffer) {
         const int value = value_of[static_cast<unsigned char>(c)];
         if (value < 0 && std::string_view(" \t\r\n").find(c) != std::string_view::npos) continue;
         if (value < 0)
-            buffer.fail("has the character " + in_quotes({&c, 1}) + ", which is no base64",
+            buffer.fail("has the character " + in_quotes({&c, 1}) + ", which is not base64",
                         ErrorCode::Damaged);
         bits = bits << 6U | static_cast<std::uint32_t>(value);
         bit_count += 6;
@@ -213,7 +213,7 @@ void GltfValue::fail(const std::string& what, ErrorCode code) const {
 GltfValue GltfValue::member(const char* key) const {
     const std::string path = path_.empty() ? key : path_ + "." + key;
     if (!exists()) return {*source_, nullptr, path};
-    if (!value_->is_object()) fail("is no object in braces");
+    if (!value_->is_object()) fail("is not an object in braces");
     const auto found = value_->find(key);
     return {*source_, found == value_->end() ? nullptr : &*found, path};
 }
@@ -221,7 +221,7 @@ GltfValue GltfValue::member(const char* key) const {
 std::vector<GltfValue> GltfValue::elements() const {
     std::vector<GltfValue> values;
     if (!exists()) return values;
-    if (!value_->is_array()) fail("is no array");
+    if (!value_->is_array()) fail("is not an array");
     for (std::size_t i = 0; i < value_->size(); ++i)
         values.emplace_back(*source_, &(*value_)[i], path_ + "[" + std::to_string(i) + "]");
     return values;
@@ -229,14 +229,14 @@ std::vector<GltfValue> GltfValue::elements() const {
 
 double GltfValue::number() const {
     if (!exists()) fail("is missing");
-    if (!value_->is_number()) fail("is no number");
+    if (!value_->is_number()) fail("is not a number");
     return value_->get<double>();
 }
 
 std::size_t GltfValue::natural_number() const {
     const double value = number();
     if (!(value >= 0 && value <= 0x1p53) || value != std::floor(value))
-        fail("is no whole number from 0 to 2^53");
+        fail("is not a whole number from 0 to 2^53");
     return static_cast<std::size_t>(value);
 }
 
@@ -260,7 +260,7 @@ std::optional<std::vector<double>> GltfValue::numbers(std::size_t count) const {
 
 std::string GltfValue::string() const {
     if (!exists()) return "";
-    if (!value_->is_string()) fail("is no string");
+    if (!value_->is_string()) fail("is not a string");
     return value_->get<std::string>();
 }
 
@@ -338,7 +338,7 @@ std::string_view GltfFile::read_beside(const GltfValue& buffer, const std::strin
         if (!fs::exists(path, ignored)) path = folder / utf8_path(uri); // a name with a percent sign in it
         // A pipe or a device named here could have no end.
         if (!fs::is_regular_file(path, ignored))
-            buffer.fail("is in the file " + shown(uri) + ", which is not there or is no ordinary file",
+            buffer.fail("is in the file " + shown(uri) + ", which is not there or is not a regular file",
                         ErrorCode::Unreadable);
         try {
             bytes = read_file(path);
@@ -367,7 +367,7 @@ std::string_view GltfFile::buffer(const GltfValue& user) {
         const std::string_view bytes = open_buffer(value, number);
         const std::size_t length = value.member("byteLength").natural_number();
         if (bytes.size() < length)
-            value.fail("has " + std::to_string(bytes.size()) + " bytes, but promises " +
+            value.fail("has " + std::to_string(bytes.size()) + " bytes, but declares " +
                            std::to_string(length),
                        ErrorCode::Damaged);
         entry->second = bytes.substr(0, length);
@@ -393,7 +393,7 @@ std::size_t size_of_component(const GltfValue& type) {
     case kFloat:
         return 4;
     default:
-        type.fail("is no type of numbers of glTF");
+        type.fail("is not a component type of glTF");
     }
 }
 
@@ -403,7 +403,7 @@ std::size_t width_of(const GltfValue& type) {
     const std::string name = type.string();
     for (const auto& [known, width] : kWidths)
         if (name == known) return width;
-    type.fail("is no type of glTF");
+    type.fail("is not a type of glTF");
 }
 
 /// glTF is little-endian.
@@ -548,7 +548,7 @@ void GltfAccessor::require_count(std::size_t count) const {
 void GltfAccessor::require_natural_numbers() const {
     if (component_type_ != kUnsignedByte && component_type_ != kUnsignedShort &&
         component_type_ != kUnsignedInt)
-        user_.fail("has numbers of a type that cannot count");
+        user_.fail("has numbers of a type that is not allowed for indices");
 }
 
 } // namespace echinus

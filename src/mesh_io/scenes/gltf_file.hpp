@@ -38,7 +38,7 @@ class GltfValue {
     std::string string() const;          ///< "" when it is not there
     bool boolean() const;                ///< false when it is not there
 
-    /// @param what  completes the sentence that begins with the path: "is no number"
+    /// @param what  completes the sentence that begins with the path: "is not a number"
     [[noreturn]] void fail(const std::string& what, ErrorCode code = ErrorCode::InvalidMesh) const;
 
   private:

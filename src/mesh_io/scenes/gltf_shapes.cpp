@@ -18,7 +18,7 @@ enum Mode : std::size_t { Points, Lines, LineLoop, LineStrip, Triangles, Triangl
 Mode mode_of(const GltfValue& primitive) {
     const GltfValue mode = primitive.member("mode");
     const std::size_t number = mode.optional_number().value_or(Triangles);
-    if (number > TriangleFan) mode.fail("is " + std::to_string(number) + ", which is no mode of glTF");
+    if (number > TriangleFan) mode.fail("is " + std::to_string(number) + ", which is not a mode of glTF");
     return static_cast<Mode>(number);
 }
 

@@ -36,7 +36,7 @@ void for_each_chunk_3ds(const MeshSource& source, std::size_t begin, std::size_t
         if (size < kHeadSize || size > end - begin)
             source.fail(ErrorCode::Damaged, "the chunk at byte " + std::to_string(begin) +
                                                 " says that it has " + std::to_string(size) + " bytes, but " +
-                                                std::to_string(end - begin) + " are left where it is");
+                                                std::to_string(end - begin) + " remain there");
         visit(Chunk3ds{id, begin + kHeadSize, begin + size});
         begin += size;
     }
@@ -82,7 +82,7 @@ class ChunkReader3ds {
         if (byte_count > bytes_left())
             bytes_.fail(ErrorCode::Damaged, "the chunk that ends at byte " +
                                                 std::to_string(bytes_.bytes.size()) +
-                                                " has less data than it promises");
+                                                " has less data than it declares");
     }
 
     MeshSource bytes_;
@@ -347,7 +347,8 @@ class Reader3ds {
         for (std::size_t i = stays ? 1 : 0; i < nodes.size(); ++i) {
             budget_.spend(scene_.shapes[object].corners.size() + 1);
             if (places_[nodes[i]] == kNotPlaced)
-                fail(object, "hang on a light, on a camera or on themselves; export it without a parent");
+                fail(object,
+                     "belong to a node below a light, a camera or itself; export it without a parent");
             scene_.instances.push_back({object, places_[nodes[i]], from_world(object, nodes[i]), {}, {}});
         }
     }
@@ -359,7 +360,7 @@ class Reader3ds {
         if (frame.determinant() < 0) frame.x = -frame.x;
         frame.origin = frame.apply(nodes_[node].pivot);
         if (!std::isnormal(frame.determinant()))
-            fail(object, "move a frame without extent; export it with a matrix that can be inverted");
+            fail(object, "move a frame whose scale is 0; export it with a matrix that can be inverted");
         return frame.inverse();
     }
 

@@ -137,7 +137,7 @@ Affine affine_of(const GltfValue& matrix) {
 
 Rotation rotation_of(const GltfValue& owner, double x, double y, double z, double w) {
     const double square = x * x + y * y + z * z + w * w;
-    if (!std::isfinite(square) || square == 0) owner.fail("has a rotation that turns nowhere");
+    if (!std::isfinite(square) || square == 0) owner.fail("has a rotation that is 0 or not finite");
     return Rotation{w, x, y, z}.normalised();
 }
 
@@ -162,7 +162,8 @@ SceneNode make_node(const GltfValue& node, std::size_t parent) {
 std::vector<Affine> placements_of(GltfFile& file, const GltfValue& node) {
     const GltfValue extension = node.member("extensions").member("EXT_mesh_gpu_instancing");
     if (!extension.exists()) return {Affine{}};
-    if (node.member("skin").exists()) extension.fail("belongs to a node with a skin, which has no place");
+    if (node.member("skin").exists())
+        extension.fail("belongs to a node with a skin, which has no pose of its own");
     const GltfValue attributes = extension.member("attributes");
     std::optional<std::size_t> count;
     const auto open = [&](const char* key, std::size_t width) -> std::optional<GltfAccessor> {
@@ -242,7 +243,7 @@ class GltfReader {
             const auto [node, parent] = pending.back();
             pending.pop_back();
             if (numbers_[node] != kNone)
-                all_nodes_[node].fail("hangs on two nodes, or on itself; nodes must form trees");
+                all_nodes_[node].fail("has two parents, or is its own ancestor; nodes must form trees");
             numbers_[node] = scene_.nodes.size();
             file_nodes_.push_back(node);
             scene_.nodes.push_back(make_node(all_nodes_[node], parent));
@@ -294,7 +295,7 @@ class GltfReader {
         SceneSkin result;
         for (const GltfValue& joint : skin.member("joints").elements()) {
             const std::size_t node = numbers_[number_of_node(joint)];
-            if (node == kNone) joint.fail("is a node that hangs on itself");
+            if (node == kNone) joint.fail("is a node that is its own ancestor");
             result.bones.push_back({node, {}});
         }
         const GltfValue matrices = skin.member("inverseBindMatrices");

@@ -137,7 +137,8 @@ std::vector<Vec3d> vertices_in(const SceneFile& file, const Pose& pose, const Me
         for (const Vec3d& vertex : vertices)
             if (!is_finite(Vec3f(vertex)))
                 source.fail(ErrorCode::InvalidMesh,
-                            "a vertex of " + shape.name + " is not finite where it stands; export it again");
+                            "a vertex of " + shape.name +
+                                " is not finite after its transformation; export it again");
         all.insert(all.end(), vertices.begin(), vertices.end());
     }
     return all;
@@ -177,9 +178,10 @@ template <typename Value>
 double require_sound(const Track<Value>& track, const std::string& name, const MeshSource& source) {
     for (std::size_t i = 0; i < track.times.size(); ++i) {
         if (!std::isfinite(track.times[i]) || !is_sound(track.values[i]))
-            source.fail(ErrorCode::InvalidMesh, "key " + std::to_string(i) + " of the " + name +
-                                                    " is not finite or turns nowhere; export the animation "
-                                                    "again");
+            source.fail(ErrorCode::InvalidMesh,
+                        "key " + std::to_string(i) + " of the " + name +
+                            " is not finite, or is a rotation of 0; export the animation "
+                            "again");
         if (i > 0 && track.times[i] < track.times[i - 1])
             source.fail(ErrorCode::InvalidMesh,
                         "keys out of order: of the " + name + ", key " + std::to_string(i) +
@@ -250,7 +252,7 @@ const SceneAnimation& choose_animation(const SceneFile& file, std::string_view n
     const std::vector<SceneAnimation>& animations = file.animations;
     if (animations.empty())
         source.fail(ErrorCode::InvalidMesh,
-                    "the file has no animation; export it with one, or take a PC2 file or a folder of OBJ");
+                    "the file has no animation; export it with one, or use a PC2 file or a folder of OBJ");
     if (name.empty() && animations.size() > 1)
         source.fail(ErrorCode::InvalidMesh, "the file has " + std::to_string(animations.size()) +
                                                 " animations; say which: " + names_of(file));

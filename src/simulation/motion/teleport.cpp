@@ -44,9 +44,8 @@ void Solver::carry_out(const Teleport& teleport) {
     for (const std::uint32_t collider : teleport.colliders) goes[collider] = 1;
     for (const Attachment& attachment : deformable.attachments)
         require_option((goes[attachment.collider] != 0) == teleport.deformable,
-                       "a teleport has to take particle " + std::to_string(attachment.particle) + " and " +
-                           name_of_collider(attachment.collider) +
-                           ", to which it is attached, along together");
+                       "a teleport must move particle " + std::to_string(attachment.particle) + " and " +
+                           name_of_collider(attachment.collider) + ", to which it is attached, together");
     // Things that go together stay to each other as they were.
     std::vector<Vec3f> places = deformable.positions;
     if (teleport.deformable)

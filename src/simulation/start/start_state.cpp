@@ -29,7 +29,7 @@ constexpr std::size_t kNamed = 3;
 /// @param way  of colliding that asks for this
 /// @param pinned  untangle() moves no pinned particle
 std::string remedy(const SimulationOptions& options, const char* way, bool pinned = false) {
-    return std::string("; move the start until they are apart, ") +
+    return std::string("; move the deformable until they are apart, ") +
            (options.newton().untangle || pinned ? "" : "set untangle to separate them, ") + "or do without " +
            way;
 }

@@ -85,8 +85,8 @@ void require_valid(const SimulationOptions& options) {
     if (newton != nullptr && newton->collision > CollisionMode::SurfacesAndSelf)
         fail("simulation option collision is none of the modes");
     if (newton != nullptr && newton->untangle && !options.surfaces_collide())
-        fail("simulation option untangle needs the collision of surfaces, which requires a start without "
-             "intersections; set collision to surfaces or surfaces_and_self");
+        fail("simulation option untangle needs the collision of surfaces, which requires an initial state "
+             "without intersections; set collision to surfaces or surfaces_and_self");
 }
 
 namespace {

@@ -115,9 +115,8 @@ class MapShape : public btConcaveShape {
             throw Error(ErrorCode::InvalidMesh,
                         "the surface is open, so what is inside is not certain; close it with repair()");
         if (this->map().view().origin != Vec3d{})
-            throw Error(ErrorCode::InvalidMesh,
-                        "the mesh stands too far from 0 for a shape; move its vertices "
-                        "to 0, and the object to where they were");
+            throw Error(ErrorCode::InvalidMesh, "the mesh is too far from 0 for a shape; move its vertices "
+                                                "to 0, and the object to where they were");
         // This type is meant for foreign meshes, and no shape of Bullet has it. CUSTOM_CONCAVE_SHAPE_TYPE is
         // also the type of btSdfCollisionShape, to which Bullet casts unchecked.
         m_shapeType = FAST_CONCAVE_MESH_PROXYTYPE;

@@ -67,7 +67,7 @@ def main(arguments: argparse.Namespace) -> int:
         print(f"echinus label: {error}", file=sys.stderr)
         return WRONG_OPTIONS if isinstance(error, MalformedAddress) else 1
     except KeyboardInterrupt:
-        print("\nechinus label: interrupted; the same command goes on from here", file=sys.stderr)
+        print("\nechinus label: interrupted; the same command continues from here", file=sys.stderr)
         return 130
 
 

@@ -177,7 +177,7 @@ def dask_cluster(scheduler: str, progress: TextIO | None) -> Iterator[Engine]:
     try:
         dask.comm.get_address_host_port(scheduler)  # the client takes seconds, and a traceback, to complain
     except ValueError as error:
-        raise MalformedAddress(f"scheduler {scheduler!r} is no address, for instance tcp://host:8786 ({error})") from None
+        raise MalformedAddress(f"scheduler {scheduler!r} is not an address, for instance tcp://host:8786 ({error})") from None
     try:
         client = dask.Client(scheduler, set_as_default=False)
     except OSError as error:
@@ -216,4 +216,4 @@ def _on_dask(dask: Any, client: Any, tasks: Iterable[Task], window: int = 1000) 
         except ModuleNotFoundError as error:
             raise RuntimeError(f"the workers of {client.scheduler.address} cannot import echinus ({error}); install it there") from None
         except (asyncio.CancelledError, concurrent.futures.CancelledError):
-            raise RuntimeError(f"the cluster at {client.scheduler.address} has gone; the same command goes on from here") from None
+            raise RuntimeError(f"the cluster at {client.scheduler.address} has gone; the same command continues from here") from None

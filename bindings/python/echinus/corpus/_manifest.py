@@ -122,7 +122,7 @@ def records_of(manifest: pathlib.Path) -> Iterator[Record]:
     if not manifest.exists():
         return
     if not manifest.is_file():
-        raise ValueError(f"{manifest} is no file; remove it, or choose another folder")
+        raise ValueError(f"{manifest} is not a file; remove it, or choose another folder")
     with manifest.open(errors="replace") as file:
         for number, line in enumerate(file, 1):
             if not line.endswith("\n"):
@@ -150,7 +150,7 @@ def _is_record(value: Any) -> bool:
 
 
 def _no_record(manifest: pathlib.Path, number: int, why: str) -> str:
-    return f"{manifest}, line {number} is no record ({why}); remove the file to label all meshes again"
+    return f"{manifest}, line {number} is not a record ({why}); remove the file to label all meshes again"
 
 
 def manifests(folder: pathlib.Path) -> list[tuple[pathlib.Path, int]]:

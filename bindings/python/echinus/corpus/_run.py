@@ -83,7 +83,7 @@ def label(
     ------
     ValueError
         The folder has labels that were made with other settings, another run is writing them, there are to be no
-        workers, or ``scheduler`` is no address.
+        workers, or ``scheduler`` is not an address.
     OSError
         A file cannot be written, or the scheduler does not answer.
     ModuleNotFoundError

@@ -88,9 +88,9 @@ def _text_of(source: pathlib.Path) -> str:
     try:
         text = source.read_text("utf-8-sig")
     except UnicodeDecodeError as error:
-        raise ValueError(f"{source} is no text in UTF-8 ({error}); a list of meshes has a path a line") from None
+        raise ValueError(f"{source} is not text in UTF-8 ({error}); a list of meshes has one path per line") from None
     if "\0" in text:
-        raise ValueError(f"{source} is no text, it has a null byte; a list of meshes has a path a line, in UTF-8")
+        raise ValueError(f"{source} is not text: it contains a null byte; a list of meshes has one path per line, in UTF-8")
     return text
 
 

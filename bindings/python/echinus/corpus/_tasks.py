@@ -95,7 +95,7 @@ def _refusal(error: Refused | Error | MemoryError, path: str) -> Record:
 
 def _labelled(name: str, path: str, size: int | None, task: Task) -> tuple[dict[str, bytes], Record]:
     if os.path.exists(path) and not os.path.isfile(path):
-        raise Refused(f"{path}: it is no file")  # a pipe would be waited for without end
+        raise Refused(f"{path}: it is not a file")  # a pipe would be waited for without end
     if size is not None and size > task.max_bytes:
         raise Refused(f"{path}: the file has {size} bytes; at most {task.max_bytes} are accepted")
     samples = sample(read_mesh(path), task.sampling)
