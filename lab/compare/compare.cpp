@@ -153,7 +153,7 @@ std::vector<BuiltSystem> build_all(std::vector<SystemOnMesh>& on_mesh, const Com
     for (SystemOnMesh& one : on_mesh) {
         const SystemType& system = *one.system;
         Stage(options, "building: " + std::string(system.title))(0);
-        std::string reason = "it comes in this size only";
+        std::string reason = "its size is fixed";
         try {
             built_systems.push_back(build_with_figures(system, one.sizes->within(options.byte_budget)));
         } catch (const Error& error) {

@@ -74,7 +74,7 @@ std::vector<std::string> remarks_on(const Comparison& comparison) {
     for (const Figures& figures : comparison.systems)
         if (!figures.excess.empty())
             remarks.push_back(
-                fmt::format("{}: more bytes than it may take; {}.", figures.system->title, figures.excess));
+                fmt::format("{}: exceeds the size limit; {}.", figures.system->title, figures.excess));
     for (const Refusal& refusal : comparison.refusals)
         remarks.push_back(fmt::format("{}: left out; {}.", refusal.system->title, refusal.reason));
     if (comparison.parts_overlap)

@@ -308,8 +308,7 @@ TEST(Columns, HaveRemarksOnWhoExceedsTheBudgetAndWhoRefused) {
     comparison.refusals.push_back({&system_named("classified"), "too small"});
     const std::vector<std::string> remarks = remarks_on(comparison);
     ASSERT_EQ(remarks.size(), 3U);
-    EXPECT_NE(remarks[0].find("dense grid: more bytes than it may take; the coarsest has 9"),
-              std::string::npos);
+    EXPECT_NE(remarks[0].find("dense grid: exceeds the size limit; the coarsest has 9"), std::string::npos);
     EXPECT_NE(remarks[2].find("Parts of the mesh overlap"), std::string::npos);
     EXPECT_NE(remarks[1].find("classified grid: left out; too small"), std::string::npos);
 }
