@@ -110,8 +110,8 @@ bool contains(const Collider& collider, Vec3f point_world) noexcept;
 
 /// Finds the contact of a particle. If there is none, `point` equals the particle bit for bit.
 ///
-/// With an exact map the contact is the nearest point of the scaled surface in the world, its distance and
-/// the normal of the scaled surface. With a distance map it is the point on the ray from the centre; depth
+/// With an exact map, the contact is the nearest point of the scaled surface in the world, its distance and
+/// the normal of the scaled surface. With a distance map, it is the point on the ray from the centre; depth
 /// and margin are world lengths along that ray, and the normal is transformed by the inverse transpose of the
 /// scale. Three equal factors cost nothing extra with either map. A custom map is queried with the margin
 /// divided by the smallest factor, and its point and normal are scaled like those of a distance map; contacts
@@ -152,7 +152,7 @@ struct ContactArrays {
 /// many colliders. Contacts ascend by collider, then by point. Colliders whose bounding sphere is away from
 /// all points cost next to nothing.
 ///
-/// With points in double the world may be arbitrarily large: points are rounded to float only in the
+/// With points in double, the world may be arbitrarily large: points are rounded to float only in the
 /// collider's local frame, and `points` of the contacts are the map's answers transformed to the world in
 /// double. Normals, depths and faces then depend only on the relative position of points and collider.
 /// @param points_world  [n]

@@ -44,7 +44,7 @@ struct ExactMapOptions {
     InsideRule rule = InsideRule::Nonzero;
     CentreChoice centre = CentreChoice::BoundingSphere;
     /// For an open surface: search for gaps between bands in which the winding number stays certain, so that
-    /// queries there need not compute it. The search takes up to about 0.2 s of one core. Without it the
+    /// queries there need not compute it. The search takes up to about 0.2 s of one core. Without it, the
     /// answers are the same but take up to eight times as long, which suits maps that are used for one frame.
     /// It has no effect on a closed mesh.
     bool find_certain_gaps = true;

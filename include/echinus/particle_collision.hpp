@@ -48,12 +48,12 @@ struct SolverStep {
 ///         collision.correct({previous, positions, velocities}, seconds);
 ///     }
 ///
-/// With exact maps a particle that begins a step outside ends it outside and on the same side of every
+/// With exact maps, a particle that begins a step outside ends it outside and on the same side of every
 /// surface, however fast it or the models move and however thin they are: it is swept from its position at
 /// the start of the step in the frame of each collider, which moves from its previous pose to its present one
 /// (see sweep() of a Collider). The exceptions, which lost_count() counts, are particles between colliders
 /// that leave less room than the thickness, and holes of open meshes. A particle that begins inside is moved
-/// to the nearest surface point. With distance maps and custom maps particles are not swept, but pushed out
+/// to the nearest surface point. With distance maps and custom maps, particles are not swept, but pushed out
 /// if they end a step inside.
 ///
 /// Between steps the object remembers the surfaces around each particle, so that particles that hardly move

@@ -98,7 +98,7 @@ struct Deformable {
 };
 
 /// The same deformable, with filters that disable collision of all its particles with a collider. After
-/// combine() the filters apply to this part only.
+/// combine(), the filters apply to this part only.
 Deformable passing_through(std::uint32_t collider, Deformable deformable);
 
 /// [particle_count] 1 for the particles that pass through a collider by the deformable's filters; empty if
@@ -167,7 +167,7 @@ Deformable make_cloth(const TriangleMesh& mesh, const MeshClothOptions& options)
 /// one position and has been no faster than `speed`. Neither suffices alone: a trembling particle stays near
 /// one position, and cloth at the end of a swing is slow for a moment.
 ///
-/// With SolverKind::Jakobsen a much lower speed may not be reached: gravity alone adds 0.04 units per second
+/// With SolverKind::Jakobsen, a much lower speed may not be reached: gravity alone adds 0.04 units per second
 /// in one frame of 1/240 s, and a particle that contacts and constraints move slightly back and forth keeps
 /// trembling at such a speed.
 struct RestCondition {
@@ -368,8 +368,8 @@ struct SimulationProfile {
     std::uint64_t unresolved_count = 0;
 };
 
-/// The relative deviation of structural constraints from their rest lengths; 0.01 is 1 %. With Jakobsen it is
-/// the residual error of the relaxations; with Newton it includes the strain of the material.
+/// The relative deviation of structural constraints from their rest lengths; 0.01 is 1 %. With Jakobsen, it
+/// is the residual error of the relaxations; with Newton it includes the strain of the material.
 struct Residual {
     double root_mean_square = 0, largest = 0; ///< 0 without such constraints
 };
@@ -400,7 +400,7 @@ class Simulation {
     /// deformable do not fit together, a constraint or a face refers to a particle that does not exist, a
     /// number is not finite, or a collider has a scale of 0, a rotation that does not have unit length, a
     /// null pointer for a map, or, where only particles collide, the exact map of an open mesh without
-    /// options.allow_open_colliders. Where surfaces collide it is also thrown when the deformable initially
+    /// options.allow_open_colliders. Where surfaces collide, it is also thrown when the deformable initially
     /// intersects a collider or, with CollisionMode::SurfacesAndSelf, itself, or is inside a collider, and
     /// untangle is not set or could not separate them: the message names the first pairs
     Simulation(Deformable deformable, std::vector<Collider> colliders, const SimulationOptions& options);
@@ -414,9 +414,9 @@ class Simulation {
     /// then the energy is minimised, and every step towards the minimum is limited so that faces stay apart:
     /// when a frame ends, no face intersects a collider or, with CollisionMode::SurfacesAndSelf, another
     /// face. docs/limits.md lists the limits; unresolved_count counts most of the cases in which they were
-    /// exceeded. A frame in which a collider moves far, or nothing finds room to move, is divided into up to
-    /// 64 substeps. Memory is kept from frame to frame: a frame that needs no more than the previous ones
-    /// allocates nothing, except for the maps of deforming colliders.
+    /// exceeded. A frame in which a collider moves far, or in which there is no room to move, is divided into
+    /// up to 64 substeps. Memory is kept from frame to frame: a frame that needs no more than the previous
+    /// ones allocates nothing, except for the maps of deforming colliders.
     ///
     /// Jakobsen: a frame consists of Verlet integration with drag, the motion of the colliders,
     /// iteration_count relaxations of all distance constraints and all collisions of particles with
@@ -459,7 +459,7 @@ class Simulation {
     /// Has the rest condition held for the required number of frames?
     bool at_rest() const;
     const SimulationProfile& profile() const;
-    /// The residual at the end of the last frame. With Jakobsen a large residual calls for more relaxations
+    /// The residual at the end of the last frame. With Jakobsen, a large residual calls for more relaxations
     /// or smaller steps. It takes about a third of the time of a relaxation of all constraints.
     Residual residual() const;
     /// XXH64 hash of the bits of all positions and velocities.
@@ -534,8 +534,8 @@ class Simulation {
     /// @pre collider_index < colliders().size()
     Load load_on(std::size_t collider_index) const;
 
-    /// Newton: sets whether the following frames record the contacts that exert a force. It is off by
-    /// default, and then costs nothing. It is not part of a saved state.
+    /// Newton: sets whether the following frames record the contacts that exert a force. Recording is off by
+    /// default, and then costs nothing. The setting is not part of a saved state.
     void record_contacts(bool is_on);
     /// The contacts that were recorded in the last frame, in unspecified order; valid until the next frame.
     /// Their impulses divided by the time step sum to the opposite of load_on() of each collider, except for

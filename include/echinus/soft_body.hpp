@@ -37,13 +37,13 @@ struct SoftBodyOptions {
 Deformable make_soft_body(const TetrahedralMesh& mesh, const SoftBodyOptions& options);
 
 /// Combines several deformables into one, such as a cloth and an organ, in O(n). With
-/// CollisionMode::SurfacesAndSelf they collide with each other. The particles of the parts, and everything
+/// CollisionMode::SurfacesAndSelf, they collide with each other. The particles of the parts, and everything
 /// that refers to them, follow one after the other.
 /// @throws Error InvalidOptions for a part that no simulation would accept; the message names the part and
 /// its fault
 Deformable combine(std::span<const Deformable> parts);
 
-/// Multiplies all masses of a deformable by a finite, positive factor. With NewtonOptions the masses of
+/// Multiplies all masses of a deformable by a finite, positive factor. With NewtonOptions, the masses of
 /// cloth come from its ClothMaterial instead.
 Deformable with_masses_times(double factor, Deformable deformable);
 

@@ -1088,19 +1088,19 @@ ECHINUS_API echinus_status echinus_deformable_soft_body(const echinus_tetrahedra
                                                         echinus_deformable** deformable);
 
 /// Combines several deformables into one, the particles of one part after those of the other. With
-/// ECHINUS_COLLISION_SURFACES_AND_SELF they collide with each other.
+/// ECHINUS_COLLISION_SURFACES_AND_SELF, they collide with each other.
 /// @param parts  [part_count]
 /// @return ECHINUS_INVALID_OPTIONS, naming the part, if a part refers to a particle that it does not have
 ECHINUS_API echinus_status echinus_deformable_combine(const echinus_deformable* const* parts,
                                                       size_t part_count, echinus_deformable** deformable);
 
-/// Multiplies all masses of a deformable by a finite, positive factor. With ECHINUS_SOLVER_NEWTON the masses
+/// Multiplies all masses of a deformable by a finite, positive factor. With ECHINUS_SOLVER_NEWTON, the masses
 /// of cloth come from the density in the options of the simulation instead.
 ECHINUS_API echinus_status echinus_deformable_with_masses_times(const echinus_deformable* deformable,
                                                                 double factor, echinus_deformable** result);
 
 /// The same deformable, with filters that disable collision of all its particles with a collider. After
-/// echinus_deformable_combine() the filters apply to this part only.
+/// echinus_deformable_combine(), the filters apply to this part only.
 /// @param collider  index in the simulation's colliders
 ECHINUS_API echinus_status echinus_deformable_passing_through(const echinus_deformable* deformable,
                                                               uint32_t collider, echinus_deformable** result);
@@ -1293,7 +1293,7 @@ ECHINUS_API echinus_status echinus_simulation_read_profile(const echinus_simulat
                                                            echinus_simulation_profile* profile);
 
 /// The relative deviation of structural constraints from their rest lengths at the end of the last frame;
-/// 0.01 is 1 %, and 0 without such constraints. With ECHINUS_SOLVER_JAKOBSEN it is the residual error of the
+/// 0.01 is 1 %, and 0 without such constraints. With ECHINUS_SOLVER_JAKOBSEN, it is the residual error of the
 /// relaxations.
 /// @param root_mean_square, largest  [1] out
 ECHINUS_API echinus_status echinus_simulation_residual(const echinus_simulation* simulation,
