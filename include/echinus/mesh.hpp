@@ -213,7 +213,7 @@ double unsigned_distance(const TriangleMesh& mesh, const Vec3d& point);
 // ---- Generators ----
 //
 // Generated meshes are closed, with outward faces, centred at the origin, and bit-identical on every machine.
-// Lengths must be finite and positive, also as floats.
+// Lengths must be finite and positive, even when rounded to float.
 
 /// Generators throw InvalidOptions for more faces than this.
 inline constexpr std::uint32_t kMaxGeneratedFaceCount = 1U << 27U;

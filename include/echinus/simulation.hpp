@@ -442,7 +442,7 @@ class Simulation {
     /// - Far from the origin floats may be too coarse for the room around the last free position. A particle
     /// that cannot be placed there counts as lost.
     ///
-    /// @throws Error Diverged, naming the frame, also in each further step; as teleport(); as
+    /// @throws Error Diverged, naming the frame, in this and in each further step; as teleport(); as
     /// ExactMap::build() if no map can be built from the vertices of a vertex cache: then nothing has
     /// changed, and the simulation can continue after set_collider_cache() with another cache
     void step();

@@ -47,7 +47,7 @@ void add_torus(Command mesh) {
     torus.add("--minor", &options->minor, "Radius of the tube").show_default();
     torus
         .add_numbers("--segments", 'x', {&options->major_segments, &options->minor_segments},
-                     "Segments around the axis x around the tube")
+                     "Numbers of segments around the axis and around the tube")
         .type_name("COUNTxCOUNT")
         .default_text("60x24");
     torus.action([options] {

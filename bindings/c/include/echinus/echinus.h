@@ -594,8 +594,8 @@ ECHINUS_API echinus_status echinus_map_contacts(const echinus_map* map, const fl
 
 /// Signed distances of points from the surface, however far away: negative inside, positive outside, the
 /// opposite of depth. Where the distance is 0, the sign bit tells whether the point is inside. Only exact
-/// maps support this. A point with NaN gives NaN, a point with infinity gives infinity, both with a gradient
-/// of 0.
+/// maps support this. A point with NaN gives NaN and a point with infinity gives infinity, both with a
+/// gradient of 0.
 /// @param distances  [count] out
 /// @param gradients  [3 count] out: unit vectors along which the distance grows fastest; or NULL
 ECHINUS_API echinus_status echinus_map_signed_distance(const echinus_map* map, const float* points,
@@ -603,7 +603,7 @@ ECHINUS_API echinus_status echinus_map_signed_distance(const echinus_map* map, c
                                                        float* distances, float* gradients);
 
 /// Winding numbers of the surface around points: integers for a closed surface, otherwise generalised winding
-/// numbers. Only exact maps support this. A point with NaN gives NaN, a point with infinity gives 0.
+/// numbers. Only exact maps support this. A point with NaN gives NaN, and a point with infinity gives 0.
 /// @param tolerance        the largest error, which does not cross a half; not negative, and 0 counts as 1e-8
 /// @param winding_numbers  [count] out
 ECHINUS_API echinus_status echinus_map_winding_number(const echinus_map* map, const float* points,
