@@ -48,6 +48,14 @@ def build_wheel(wheel_directory, config_settings=None, metadata_directory=None):
     return wheel
 
 
+def prepare_metadata_for_build_wheel(metadata_directory, config_settings=None):
+    """Without it pip builds the wheel to read its metadata, for minutes and under that heading."""
+    info = pathlib.Path(metadata_directory, f"echinus-{library_version()}.dist-info")
+    info.mkdir()
+    (info / "METADATA").write_text(metadata())
+    return info.name
+
+
 def build_sdist(sdist_directory, config_settings=None):
     name = f"echinus-{library_version()}"
     packed = io.BytesIO()

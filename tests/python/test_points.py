@@ -1,6 +1,8 @@
 """Arrays of points: every layout and type gives the answers of a plain float32 array, or a clear error."""
 
 import pickle
+import subprocess
+import sys
 
 import numpy as np
 import pytest
@@ -239,3 +241,11 @@ def test_simulations_refuse_them():
     far = moved(ech.make_box(), PLACES["utm"])
     with pytest.raises(ech.Error, match="is located around"):
         ech.Simulation(ech.make_cloth(), [ech.Collider(ech.ExactMap(far))])
+
+
+def test_a_numpy_whose_arrays_the_module_cannot_read_is_refused():
+    """Its answers were wrong without an error, and a million contacts ended the process."""
+    program = "import numpy; numpy.__version__ = '2.4.6'; import echinus"
+    result = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True)
+    assert result.returncode == 1
+    assert "needs NumPy 1, but NumPy 2.4.6 is installed" in result.stderr

@@ -7,9 +7,26 @@
 #include <pybind11/stl.h>
 
 #include <exception>
+#include <string>
+
+namespace {
+
+/// pybind11 before 2.12 knows only the memory layout of NumPy 1's types. With NumPy 2 it takes wrong strides:
+/// answers would be wrong, or written past the end of their array.
+void refuse_numpy_2() {
+#if PYBIND11_VERSION_HEX < 0x020C0000
+    const auto version = pybind11::module_::import("numpy").attr("__version__").cast<std::string>();
+    if (std::stoi(version) >= 2)
+        throw pybind11::import_error("this build of echinus needs NumPy 1, but NumPy " + version +
+                                     " is installed: pip install \"numpy<2\"");
+#endif
+}
+
+} // namespace
 
 PYBIND11_MODULE(_core, module) {
     using namespace echinus::python;
+    refuse_numpy_2();
     bind_errors(module);
     bind_meshes(module);
     bind_maps(module);
