@@ -1,3 +1,4 @@
+#include "files/text.hpp"
 #include "simulation/jakobsen/contact_response.hpp"
 #include "simulation/start/validation.hpp"
 
@@ -150,7 +151,7 @@ std::span<const std::uint32_t> SurfaceCollision::correct(std::span<Vec3f> positi
                                                          std::span<Vec3f> velocities, double seconds) {
     const std::size_t count = state_->particles.size();
     require_option(seconds > 0 && std::isfinite(seconds),
-                   "a step takes " + std::to_string(seconds) + " seconds; it must be a finite time above 0");
+                   "a step takes " + number_text(seconds) + " seconds; it must be a finite time above 0");
     require_option(positions.size() == count && (velocities.empty() || velocities.size() == count),
                    "a step has " + std::to_string(positions.size()) + " positions and " +
                        std::to_string(velocities.size()) + " velocities; it needs " + std::to_string(count));

@@ -81,5 +81,7 @@ def test_arrays_that_cannot_be_corrected_in_place_are_refused():
         collision.correct(good, read_only, seconds=SECONDS)
     with pytest.raises(ech.Error, match="1 previous positions"):
         collision.correct(good[:1], good.copy(), seconds=SECONDS)
-    with pytest.raises(ech.Error, match="seconds"):
-        collision.correct(good, good.copy(), seconds=0)
+    with pytest.raises(ech.Error, match="a step takes -1e-09 seconds"):
+        collision.correct(good, good.copy(), seconds=-1e-9)
+    with pytest.raises(ValueError, match="must be different arrays: copy the positions"):
+        collision.correct(good, good, seconds=SECONDS)

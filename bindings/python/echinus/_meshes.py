@@ -81,7 +81,7 @@ def as_mesh(mesh: MeshLike) -> Mesh:
     if isinstance(mesh, Mesh):
         return mesh
     if not isinstance(mesh, MeshLike):
-        raise TypeError(f"a mesh has .vertices and .faces; {type(mesh).__name__} does not: use echinus.Mesh(vertices, faces)")
+        raise TypeError(f"a mesh has .vertices and .faces; {type(mesh).__name__} does not: use echinus.Mesh(vertices, faces), or echinus.read_mesh(path) for a file")
     return Mesh(mesh.vertices, mesh.faces)
 
 

@@ -106,6 +106,12 @@ std::unique_ptr<Surfaces> surfaces_of(const py::array_t<float>& positions,
 py::array_t<std::uint32_t> correct_particles(Particles& shared, const py::object& previous,
                                              const py::object& positions, const py::object& velocities,
                                              const py::object& inverse_masses, double seconds) {
+    if (py::isinstance<py::array>(previous) && py::isinstance<py::array>(positions)) {
+        const py::array before(previous), after(positions);
+        if (after.size() > 0 && before.data() == after.data())
+            throw py::value_error("previous_positions and positions must be different arrays: "
+                                  "copy the positions before the step");
+    }
     const std::vector<Vec3f> began = copied_points(previous, "previous_positions");
     const std::vector<float> masses = copied_numbers(inverse_masses, "inverse_masses");
     const SolverStep step{.previous_positions = began,

@@ -1,3 +1,4 @@
+#include "files/text.hpp"
 #include "geometry/precondition.hpp"
 #include "simulation/jakobsen/collisions.hpp"
 #include "simulation/start/validation.hpp"
@@ -39,7 +40,7 @@ bool is_sane(const Vec3f& p) {
 /// Words are put together only for an error, as they take memory.
 void require_valid(const SolverStep& step, double seconds) {
     if (!(seconds > 0 && std::isfinite(seconds)))
-        fail("a step takes " + std::to_string(seconds) + " seconds; it must be a finite time above 0");
+        fail("a step takes " + number_text(seconds) + " seconds; it must be a finite time above 0");
     const std::size_t count = step.positions.size();
     const auto require_size = [&](const char* name, std::size_t size) {
         if (size != count)

@@ -70,8 +70,7 @@ void require_valid(const RigidTransform& pose, const std::string& owner) {
     const double size = length(pose.rotation);
     if (!(size >= 1 - kTolerance && size <= 1 + kTolerance))
         fail(owner + " has the rotation " + as_text(pose.rotation) + ", a quaternion of length " +
-             std::to_string(size) +
-             "; it must be 1: cos(a / 2) and the unit axis times sin(a / 2) turn by a");
+             number_text(size) + "; it must be 1: cos(a / 2) and the unit axis times sin(a / 2) turn by a");
 }
 
 void require_valid(const SimulationOptions& options) {
@@ -272,7 +271,7 @@ namespace {
 void require_valid(const Collider& collider, const SimulationOptions& options, const std::string& name) {
     for (const double scale : {collider.scale.x, collider.scale.y, collider.scale.z})
         if (static_cast<float>(scale) == 0 || !std::isfinite(static_cast<float>(scale)))
-            fail(name + " has a scale of " + std::to_string(scale) +
+            fail(name + " has a scale of " + number_text(scale) +
                  "; it must be finite and not 0, also as a float");
     require_valid(collider.pose, name);
     if (!is_finite(collider.linear_velocity) || !is_finite(collider.angular_velocity))
