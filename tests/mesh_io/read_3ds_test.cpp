@@ -232,7 +232,7 @@ TEST_F(Read3ds, RefusesListsAndChunksThatPromiseMoreThanTheyHave) {
                    mesh(chunk(0x4110, "\xFF\xFF")));
     std::string longer = chunk(0x4120, words({0}));
     longer[2] = 99;
-    expect_refused(ErrorCode::Damaged, "the chunk at byte 38 says that it has 99 bytes, but 8 are left",
+    expect_refused(ErrorCode::Damaged, "the chunk at byte 38 says that it has 99 bytes, but 8 remain",
                    mesh(longer));
     expect_refused(
         ErrorCode::Damaged, "the chunk that ends at byte",

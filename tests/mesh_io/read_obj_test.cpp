@@ -75,8 +75,8 @@ TEST(ReadObj, PassesOverPathsWithBackslashesButNotOverTheNextStatement) {
                      "line 1: 'usemtl' continues on the next line, as the backslash at its end says, but "
                      "there 'v' follows; remove the backslash",
                      "usemtl C:\\mats\\\n" + kSquare);
-    expect_obj_error(ErrorCode::Damaged, "line 5: 'g' goes on", kSquare + "g a\\\nf 1 2 3\n");
-    expect_obj_error(ErrorCode::Damaged, "line 1: 'v' goes on", "v 0 0 0\\\n" + kSquare);
+    expect_obj_error(ErrorCode::Damaged, "line 5: 'g' continues", kSquare + "g a\\\nf 1 2 3\n");
+    expect_obj_error(ErrorCode::Damaged, "line 1: 'v' continues", "v 0 0 0\\\n" + kSquare);
     expect_obj_error(ErrorCode::Damaged, "line 5: a vertex number was expected, not 'f'",
                      kSquare + "f 1 2 3 \\\nf 1 3 4\n");
 }
