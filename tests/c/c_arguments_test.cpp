@@ -175,6 +175,31 @@ TEST(CStructs, OfANewerHeaderGetZeroWhereTheLibraryKnowsNothing) {
     EXPECT_EQ(info.unknown, 0U);
 }
 
+TEST(CStructs, OfAnOlderHeaderAreReadAndFilledNoFartherThanTheyKnow) {
+    const CMesh mesh = c_torus();
+    echinus_repair_options options;
+    echinus_repair_options_init(&options, sizeof options);
+    options.size = offsetof(echinus_repair_options, close_seams);
+    options.close_seams = 7; // beyond the size
+    CMesh repaired;
+    expect_ok(echinus_mesh_repair(mesh.get(), &options, out(repaired), nullptr, nullptr));
+
+    const float positions[12] = {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1};
+    const std::uint32_t corners[4] = {0, 1, 2, 3};
+    CTetrahedra corner;
+    expect_ok(echinus_tetrahedra_create(positions, 4, 0, corners, 1, out(corner)));
+    CDeformable body;
+    expect_ok(echinus_deformable_soft_body(corner.get(), nullptr, out(body)));
+    echinus_deformable_arrays arrays{};
+    arrays.size = offsetof(echinus_deformable_arrays, tetrahedra);
+    expect_ok(echinus_deformable_read(body.get(), &arrays));
+    EXPECT_EQ(arrays.particle_count, 4U);
+    EXPECT_EQ(arrays.tetrahedron_count, 0U);
+    arrays.size = sizeof arrays;
+    expect_ok(echinus_deformable_read(body.get(), &arrays));
+    EXPECT_EQ(arrays.tetrahedron_count, 1U);
+}
+
 TEST(CStructs, AreRefusedWithASizeThatCannotBeRight) {
     const CMesh mesh = c_torus();
     echinus_exact_map_options options;

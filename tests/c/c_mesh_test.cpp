@@ -336,6 +336,17 @@ TEST_F(CTetrahedraFiles, ReadBackWithTheSameBits) {
     EXPECT_EQ(none, nullptr);
 }
 
+TEST_F(CTetrahedraFiles, TellWhatTheyWereChangedIn) {
+    write("a.node", "5 3 0 0\n0 0 0 0\n1 1 0 0\n2 0 1 0\n3 0 0 1\n4 9 9 9\n");
+    write("a.ele", "1 4 0\n0 0 2 1 3\n");
+    CTetrahedra body;
+    echinus_tetrahedra_file_report report{};
+    report.size = sizeof report;
+    expect_ok(echinus_tetrahedra_read(path("a.node").string().c_str(), out(body), &report));
+    EXPECT_EQ(report.turned_tetrahedra, 1U);
+    EXPECT_EQ(report.dropped_vertices, 1U);
+}
+
 TEST(CTetrahedra, ThatAreNotValidAreRefused) {
     CTetrahedra body;
     const auto create = [&](std::initializer_list<std::uint32_t> corners) {

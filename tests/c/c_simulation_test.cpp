@@ -416,6 +416,15 @@ TEST(CScenesOfTheRepository, AreSimulatedAsInCpp) {
     expect_same_state(simulation, expected);
 }
 
+TEST_F(CScenes, AreRefusedWithTheKeyAtFault) {
+    CScene scene;
+    expect_refused(echinus_scene_parse(R"({"model": {"torus": {}}, "clot": {}})", "name.json", out(scene)),
+                   ECHINUS_INVALID_SCENE, "clot");
+    expect_refused(echinus_scene_read(path("none.json").string().c_str(), out(scene)), ECHINUS_UNREADABLE,
+                   "none.json");
+    EXPECT_EQ(scene, nullptr);
+}
+
 TEST_F(CScenes, FindTheirFilesInTheFoldersThatAreNamed) {
     const CMesh torus = c_torus();
     expect_ok(echinus_mesh_write(torus.get(), path("torus.obj").string().c_str()));

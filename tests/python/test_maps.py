@@ -96,6 +96,18 @@ def test_a_map_is_built_with_every_option_and_answers_by_it():
         ech.DistanceMap(torus(), 20)
 
 
+def test_each_instruction_set_is_used_that_is_named_and_gives_the_same_answers():
+    points = points_around(torus(), 5000)
+    before, contacts = ech.instruction_set(), EXACT_TORUS.contacts(points, 0.05)
+    try:
+        for name in ech.available_instruction_sets():
+            ech.use_instruction_set(name)
+            assert ech.instruction_set() == name
+            assert (EXACT_TORUS.contacts(points, 0.05).array == contacts.array).all()
+    finally:
+        ech.use_instruction_set(before)
+
+
 def test_the_answers_are_views_of_one_array():
     contacts = EXACT_TORUS.contacts(points_around(torus(), 10))
     for name in ("inside", "depth", "normal", "point", "face", "certain", "feature"):

@@ -230,6 +230,21 @@ def test_maps_and_meshes_keep_their_place_in_files_and_pickles(place, tmp_path):
     assert np.array_equal(pickle.loads(pickle.dumps(far)).vertices, far.vertices)
 
 
+def test_files_tetrahedra_and_brute_force_take_them(place, tmp_path):
+    box = ech.make_box((1, 2, 3))
+    far = moved(box, place)
+    ech.write_mesh(tmp_path / "far.ply", far)
+    again = ech.read_mesh(tmp_path / "far.ply")
+    assert again.vertices.dtype == np.float64
+    assert np.abs(again.vertices[again.faces] - far.vertices[far.faces]).max() < 2e-7
+    points = np.random.default_rng(2).uniform(-2, 2, (50, 3))
+    assert np.allclose(ech.unsigned_distance(far, points + place), ech.unsigned_distance(box, points), atol=1e-6)
+    assert np.allclose(ech.winding_number(far, points + place), ech.winding_number(box, points), atol=1e-5)
+    body = ech.tetrahedralize(ech.ExactMap(far), size=0.4).mesh
+    assert body.vertices.dtype == np.float64
+    assert ech.measure_distance(body, ech.ExactMap(far)).greatest_to_model < 0.4
+
+
 def test_float32_says_how_coarse_it_is_there():
     box = ech.make_box((1, 0.9, 0.8))
     rounded = ech.Mesh((box.vertices + np.array(PLACES["utm"])).astype(np.float32), box.faces)

@@ -77,6 +77,13 @@ def test_what_is_written_reads_back_with_the_same_bits(tmp_path, extension):
     assert same(read.mesh, made) and read.turned_tetrahedra == read.dropped_vertices == 0
 
 
+def test_a_file_of_tetgen_tells_what_was_changed(tmp_path):
+    (tmp_path / "a.node").write_text("5 3 0 0\n1 0 0 0\n2 1 0 0\n3 0 1 0\n4 0 0 1\n5 9 9 9\n")
+    (tmp_path / "a.ele").write_text("1 4 0\n1 1 3 2 4\n")
+    read = ech.read_tetrahedra(tmp_path / "a.ele")
+    assert (read.turned_tetrahedra, read.dropped_vertices) == (1, 1)
+
+
 def test_files_that_are_none_are_refused(tmp_path):
     assert refusal(ech.read_tetrahedra, tmp_path / "none.msh")[0] == "unreadable"
     (tmp_path / "torn.msh").write_text("$MeshFormat\n")

@@ -3,7 +3,7 @@ import assert from 'node:assert/strict';
 import { readFileSync, readdirSync } from 'node:fs';
 import { join } from 'node:path';
 import { before, describe, test } from 'node:test';
-import { module, readScene, sourceFolder, start } from './support.mjs';
+import { module, pseudoRandom, readScene, sourceFolder, start } from './support.mjs';
 
 let echinus;
 before(async () => { echinus = await start(); });
@@ -81,6 +81,15 @@ describe('A mesh', () => {
         const mesh = echinus.readMesh(new TextEncoder().encode(obj), 'A.OBJ');
         assert.equal(mesh.faceCount, 3);
         assert.ok(mesh.vertices.includes(Math.fround(1e-3)));
+    });
+    // Emscripten's library has no std::from_chars() for floats: there they are read by another function.
+    test('reads decimals as the nearest float', () => {
+        const random = pseudoRandom(5);
+        const numbers = Array.from({ length: 300 }, () => (random() - 0.5) * 10 ** Math.floor(60 * random() - 30));
+        const rows = numbers.map((x) => `v ${x} ${x.toExponential(20)} 1`);
+        const faces = numbers.slice(2).map((_, i) => `f ${i + 1} ${i + 2} ${i + 3}`);
+        const { vertices } = echinus.readMesh(new TextEncoder().encode([...rows, ...faces].join('\n')), 'a.obj');
+        numbers.forEach((x, i) => assert.deepEqual([...vertices.subarray(3 * i, 3 * i + 2)], [Math.fround(x), Math.fround(x)]));
     });
     test('judges points by its winding number and distance', () => {
         const box = echinus.makeBox([2, 2, 2]);
