@@ -68,6 +68,7 @@ struct SurfaceCollision::State {
 
     Simulation simulation;
     struct Particle {
+        Vec3f from;                 ///< where it was when the step began
         Vec3d sent;                 ///< its motion in this step without contact
         bool has_exploded = false;  ///< in this step
         bool was_corrected = false; ///< in the step before
@@ -81,6 +82,7 @@ void SurfaceCollision::State::send(std::span<const Vec3f> positions) {
     for (std::size_t i = 0; i < particles.size(); ++i) {
         const Vec3d motion = Vec3d(positions[i]) - Vec3d(simulation.positions()[i]);
         Particle& particle = particles[i];
+        particle.from = simulation.positions()[i];
         constexpr double kFarthest{ParticleCollision::kFarthest};
         particle.has_exploded = !(dot(motion, motion) <= kFarthest * kFarthest); // by NaN, too
         particle.sent = particle.has_exploded ? Vec3d{} : motion;
@@ -116,7 +118,7 @@ void SurfaceCollision::State::write_back(std::span<Vec3f> positions, std::span<V
         corrected.push_back(i);
         positions[i] = now.positions[i];
         if (velocities.empty()) continue;
-        const Vec3d change = Vec3d(now.velocities[i]) - particle.sent; // in a step, the unit of time
+        const Vec3d change = Vec3d(now.positions[i]) - Vec3d(particle.from) - particle.sent;
         Vec3d motion = Vec3d(velocities[i]) * seconds + change;
         if (is_impact) motion = without_approach(positions[i], motion);
         velocities[i] = Vec3f(motion * (1 / seconds));
