@@ -192,25 +192,50 @@ void NewtonSolver::deform() {
     }
 }
 
-/// So that impacts are solved where they happen.
+/// So that loads follow what gives way to colliders, and impacts are solved where they happen.
 std::uint32_t NewtonSolver::part_count() {
     if (!options.surfaces_collide()) return 1;
     find_now();
-    const double room = threshold::kDecidingRoom * fastest() * options.time_step;
-    for (std::size_t c = 0; c < colliders.size(); ++c) {
-        Collider after = colliders[c];
-        after.pose = pose_without_contact(c, options.time_step);
-        is_near_[c] = holds(c) || (meets_some_[c] != 0 &&
-                                   CarryField::may_carry(colliders[c], after, now_, motion_.particle_count(),
-                                                         room, threshold::kTouch * thickness_))
-                          ? 1
-                          : 0;
-    }
+    colliders_before_ = colliders;
+    for (std::size_t c = 0; c < colliders.size(); ++c)
+        colliders[c].pose = pose_without_contact(c, options.time_step);
+    find_near_colliders();
+    const double carried = most_carried();
+    colliders = colliders_before_;
     for (FreeBody& body : free_bodies()) body.goal_pose = guess(body, options.time_step);
     const double overlap = contacts_->overlap_ahead(colliders, now_, guess(motion_.places, options.time_step),
                                                     may_touch_, workers_);
-    const double parts = std::ceil(overlap / (threshold::kMostOverlap * mean_edge_));
+    const double parts = std::ceil(std::max(carried / (threshold::kMostCarried * thickness_),
+                                            overlap / (threshold::kMostOverlap * mean_edge_)));
     return static_cast<std::uint32_t>(std::clamp(parts, 1.0, double{threshold::kMostPartsOfFrame}));
+}
+
+/// Colliders stand where the frame ends.
+void NewtonSolver::find_near_colliders() {
+    const double room = threshold::kDecidingRoom * fastest() * options.time_step;
+    const auto may_carry = [&](std::size_t c) {
+        return meets_some_[c] != 0 &&
+               CarryField::may_carry(colliders_before_[c], colliders[c], now_, motion_.particle_count(), room,
+                                     threshold::kTouch * thickness_);
+    };
+    for (std::size_t c = 0; c < colliders.size(); ++c) is_near_[c] = holds(c) || may_carry(c) ? 1 : 0;
+}
+
+/// How far colliders carry a particle in the frame beyond the motion that it has, at most. Colliders stand
+/// where the frame ends.
+double NewtonSolver::most_carried() {
+    const CarryField field(colliders_before_, colliders, is_near_, deformations_, {},
+                           threshold::kTouch * thickness_);
+    if (field.is_zero()) return 0;
+    start_ = now_;
+    field.carry(start_, std::span(is_held_).first(motion_.particle_count()), workers_);
+    double most = 0;
+    for (std::size_t i = 0; i < motion_.particle_count(); ++i) {
+        const Vec3d displacement = Vec3d(start_[i]) - Vec3d(now_[i]);
+        const Vec3d beyond = displacement - motion_.velocities[i] * options.time_step;
+        most = std::max(most, std::min(length(displacement), length(beyond)));
+    }
+    return most;
 }
 
 /// Vertices of a collider that deforms do not go back.

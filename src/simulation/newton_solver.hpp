@@ -40,6 +40,8 @@ class NewtonSolver : public Solver {
     void require_ways();
     void deform();
     std::uint32_t part_count();
+    void find_near_colliders();
+    double most_carried();
     bool step_part(const FramePart& part);
     void find_now();
     double fastest() const;

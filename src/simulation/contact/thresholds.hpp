@@ -77,10 +77,11 @@ inline constexpr float kMostClosedByCarrying = 0.5F;
 /// Thicknesses: what is no farther from a collider is carried along with it whole; and longest displacements
 /// over which the field fades beyond, which then closes at most a quarter of a gap.
 inline constexpr double kTouch = 2, kFade = 4;
-/// Mean edges by which displacements would overlap in a part of a frame, so that impacts are solved where
-/// they happen: with 4 a sheet that hits at 40 m/s bounces off within one; and parts of a frame. More parts
-/// take more time.
-inline constexpr double kMostOverlap = 2;
+/// In a part of a frame, at most: thicknesses by which colliders carry particles beyond the motion that these
+/// have, so that loads follow what gives way, and mean edges by which displacements would overlap, so that
+/// impacts are solved where they happen: with 4 a sheet that hits at 40 m/s bounces off within one. And parts
+/// of a frame. More parts take more time.
+inline constexpr double kMostCarried = 4, kMostOverlap = 2;
 inline constexpr std::uint32_t kMostPartsOfFrame = 32;
 /// Of a frame: a part in which colliders cannot carry what is near them is halved, so that it can give way
 /// meanwhile, down to this. Less holds harder squeezes, and takes more time in them.
