@@ -1,4 +1,3 @@
-#include "lab/rivals/superquadric_map/superquadric.hpp"
 
 #include "directions/face_cone.hpp"
 #include "directions/samples_near.hpp"
