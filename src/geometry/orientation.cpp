@@ -106,6 +106,8 @@ void add_triple_product(ExactSum<capacity>& sum, const Vec3d& p, const Vec3d& q,
 } // namespace
 
 int exact_orientation(const Vec3f& a, const Vec3f& b, const Vec3f& c, const Vec3f& d) noexcept {
+    // Surfaces that touch have vertices in common. A point equal to d never gets here.
+    if (a == b || b == c || a == c) return 0;
     const auto u = difference_in_floats(a, d);
     const auto v = difference_in_floats(b, d);
     const auto w = difference_in_floats(c, d);

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 
 namespace echinus {
 
@@ -109,6 +110,13 @@ bool intersect_beyond_shared(const TriangleMesh& mesh, const Triangle& a, const 
     return pair.parts_meet();
 }
 
+void sort(std::vector<FacePair>& pairs) {
+    // As one number each: comparing one member after the other branches.
+    const auto number = [](const FacePair& pair) { return std::uint64_t{pair.a} << 32 | pair.b; };
+    std::sort(pairs.begin(), pairs.end(),
+              [&](const FacePair& p, const FacePair& q) { return number(p) < number(q); });
+}
+
 Simplex simplex_of(const TriangleMesh& mesh, std::uint32_t face) {
     const auto [a, b, c] = mesh.faces[face];
     return {{mesh.vertices[a], mesh.vertices[b], mesh.vertices[c]}, 3};
@@ -127,22 +135,24 @@ std::vector<FacePair> intersecting_pairs(const TriangleMesh& a, const TriangleMe
     if (a.origin != b.origin)
         throw Error(ErrorCode::InvalidMesh, "the meshes have different origins; move the vertices of one to "
                                             "the other's frame first");
+    BoxTree a_tree = tree_of_faces(a), b_tree = tree_of_faces(b);
     std::vector<FacePair> pairs;
-    for_each_overlap(tree_of_faces(a), 0, tree_of_faces(b), 0, [&](std::uint32_t p, std::uint32_t q) {
+    for_each_overlap(a_tree, 0, b_tree, 0, [&](std::uint32_t p, std::uint32_t q) {
         if (simplices_meet(simplex_of(a, p), simplex_of(b, q))) pairs.push_back({p, q});
     });
-    std::sort(pairs.begin(), pairs.end());
+    sort(pairs);
     return pairs;
 }
 
 std::vector<FacePair> self_intersecting_pairs(const TriangleMesh& mesh) {
     require_valid(mesh);
+    BoxTree tree = tree_of_faces(mesh);
     std::vector<FacePair> pairs;
-    for_each_overlap(tree_of_faces(mesh), 0, [&](std::uint32_t p, std::uint32_t q) {
+    for_each_overlap(tree, 0, [&](std::uint32_t p, std::uint32_t q) {
         if (intersect_beyond_shared(mesh, mesh.faces[p], mesh.faces[q]))
             pairs.push_back({std::min(p, q), std::max(p, q)});
     });
-    std::sort(pairs.begin(), pairs.end());
+    sort(pairs);
     return pairs;
 }
 

@@ -63,7 +63,9 @@ std::vector<BoxTree::Box> boxes_of(const TetrahedralMesh& mesh) {
     return boxes;
 }
 
-TetrahedronTree::TetrahedronTree(const TetrahedralMesh& mesh) : mesh_(mesh), tree_(boxes_of(mesh)) {}
+TetrahedronTree::TetrahedronTree(const TetrahedralMesh& mesh) : mesh_(mesh), tree_(boxes_of(mesh)) {
+    tree_.split_all();
+}
 
 std::uint32_t TetrahedronTree::nearest(const Vec3d& point) const {
     Nearest nearest{std::numeric_limits<double>::infinity(), std::numeric_limits<std::uint32_t>::max()};
@@ -83,11 +85,10 @@ void TetrahedronTree::search(std::uint32_t number, const Vec3d& point, Nearest& 
         }
         return;
     }
-    const std::uint32_t left = number + 1;
     const bool right_first =
-        tree_.node(node.right).box.distance(point) < tree_.node(left).box.distance(point);
-    search(right_first ? node.right : left, point, nearest);
-    search(right_first ? left : node.right, point, nearest);
+        tree_.node(node.right()).box.distance(point) < tree_.node(node.left).box.distance(point);
+    search(right_first ? node.right() : node.left, point, nearest);
+    search(right_first ? node.left : node.right(), point, nearest);
 }
 
 /// The point's weights: the volumes of the tetrahedra that it makes with the faces, as shares.

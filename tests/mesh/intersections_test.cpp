@@ -272,6 +272,33 @@ TEST(IntersectingPairs, AreThoseFoundOneByOne) {
     EXPECT_EQ(intersecting_pairs(torus, sheet), expected);
 }
 
+TEST(IntersectingPairs, OfAMeshAndItsCopyAreThoseFoundOneByOne) {
+    for (const TriangleMesh& mesh :
+         {make_torus(1, 0.4, 20, 9), make_sphere(1, 16, 9), make_box({1, 2, 3}, 4), grid(14, 1, {})}) {
+        const Pairs expected = pairs_one_by_one(mesh, mesh);
+        EXPECT_GT(expected.size(), 6 * mesh.faces.size());
+        EXPECT_EQ(intersecting_pairs(mesh, mesh), expected);
+    }
+}
+
+// The middle of a box leaves nearly all faces on one side, at every level of the tree.
+TEST(IntersectingPairs, AreFoundWhereFacesCrowdTogether) {
+    TriangleMesh a, b;
+    for (int k = 0; k < 100; ++k) {
+        const float size = std::ldexp(1.0F, k - 50);
+        for (TriangleMesh* mesh : {&a, &b}) {
+            const auto first = static_cast<std::uint32_t>(mesh->vertices.size());
+            for (const Vec3f& p : {Vec3f{1, 0, 0}, Vec3f{0, 1, 0}, Vec3f{0, 0, 1}})
+                mesh->vertices.push_back(p * size);
+            mesh->faces.push_back({first, first + 1, first + 2});
+        }
+        b.vertices.back() = {size, size, size};
+    }
+    const Pairs expected = pairs_one_by_one(a, b);
+    EXPECT_GE(expected.size(), 100U);
+    EXPECT_EQ(intersecting_pairs(a, b), expected);
+}
+
 TEST(IntersectingPairs, OfBoxesThatTouchAreThoseOfTheCommonSideAndOfBoxesApartNone) {
     const TriangleMesh box = make_box({1, 1, 1}, 2);
     EXPECT_TRUE(intersecting_pairs(box, translated(box, {1.0001F, 0, 0})).empty());
