@@ -6,6 +6,7 @@
 
 #include <array>
 #include <compare>
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -48,6 +49,34 @@ std::vector<FacePair> intersecting_pairs(const TriangleMesh& a, const TriangleMe
 /// whose corner lies on its own opposite edge intersects its neighbours there.
 /// @throws Error InvalidMesh as require_valid() does
 std::vector<FacePair> self_intersecting_pairs(const TriangleMesh& mesh);
+
+/// A polyline along which surfaces intersect.
+struct IntersectionCurve {
+    std::vector<Vec3f> points;
+    bool closed = false; ///< a segment joins the last point to the first
+};
+
+/// Where surfaces intersect, as pairs of faces and as geometry.
+struct Intersections {
+    /// Bounds the memory where surfaces lie on each other: a face then intersects a dozen others.
+    static constexpr std::size_t kMostPairs = std::size_t{1} << 25;
+
+    std::vector<FacePair> pairs;
+    /// Each pair of faces that cross contributes the segment that both contain. Which segments meet in an end
+    /// is decided exactly; positions are computed in double and rounded. Curves end at the border of a
+    /// surface, and where more than two segments meet. Coplanar faces, faces without area, and faces that
+    /// touch in a point contribute nothing.
+    std::vector<IntersectionCurve> curves;
+    double length = 0; ///< of all curves
+};
+
+/// The pairs of intersecting_pairs() and their curves, in O(n log n + pairs log pairs).
+/// @throws Error as intersecting_pairs() does; InvalidMesh for more than kMostPairs pairs
+Intersections intersections(const TriangleMesh& a, const TriangleMesh& b);
+
+/// The pairs of self_intersecting_pairs() and their curves.
+/// @throws Error as self_intersecting_pairs() does; InvalidMesh for more than kMostPairs pairs
+Intersections self_intersections(const TriangleMesh& mesh);
 
 } // namespace echinus
 

@@ -1,12 +1,16 @@
+#include "mesh/intersecting_pairs.hpp"
+
 #include "geometry/box_tree.hpp"
 #include "mesh/simplices_meet.hpp"
 
 #include <echinus/error.hpp>
-#include <echinus/intersections.hpp>
 
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <limits>
+#include <string>
+#include <utility>
 
 namespace echinus {
 
@@ -110,12 +114,31 @@ bool intersect_beyond_shared(const TriangleMesh& mesh, const Triangle& a, const 
     return pair.parts_meet();
 }
 
-void sort(std::vector<FacePair>& pairs) {
-    // As one number each: comparing one member after the other branches.
-    const auto number = [](const FacePair& pair) { return std::uint64_t{pair.a} << 32 | pair.b; };
-    std::sort(pairs.begin(), pairs.end(),
-              [&](const FacePair& p, const FacePair& q) { return number(p) < number(q); });
-}
+/// Pairs in the order in which a tree finds them, and then ascending.
+class FoundPairs {
+  public:
+    explicit FoundPairs(std::size_t most) : most_(most) {}
+
+    void add(std::uint32_t a, std::uint32_t b) {
+        if (pairs_.size() == most_)
+            throw Error(ErrorCode::InvalidMesh,
+                        "more than " + std::to_string(most_) +
+                            " pairs of faces intersect, as where surfaces lie on each other; check parts");
+        pairs_.push_back({a, b});
+    }
+
+    std::vector<FacePair> sorted() && {
+        // As one number each: comparing one member after the other branches.
+        const auto number = [](const FacePair& pair) { return std::uint64_t{pair.a} << 32 | pair.b; };
+        std::sort(pairs_.begin(), pairs_.end(),
+                  [&](const FacePair& p, const FacePair& q) { return number(p) < number(q); });
+        return std::move(pairs_);
+    }
+
+  private:
+    std::size_t most_;
+    std::vector<FacePair> pairs_;
+};
 
 Simplex simplex_of(const TriangleMesh& mesh, std::uint32_t face) {
     const auto [a, b, c] = mesh.faces[face];
@@ -129,31 +152,37 @@ bool triangles_intersect(const std::array<Vec3f, 3>& a, const std::array<Vec3f, 
            std::all_of(b.begin(), b.end(), is_finite<float>) && simplices_meet({a, 3}, {b, 3});
 }
 
-std::vector<FacePair> intersecting_pairs(const TriangleMesh& a, const TriangleMesh& b) {
+std::vector<FacePair> intersecting_pairs(const TriangleMesh& a, const TriangleMesh& b, std::size_t most) {
     require_valid(a);
     require_valid(b);
     if (a.origin != b.origin)
         throw Error(ErrorCode::InvalidMesh, "the meshes have different origins; move the vertices of one to "
                                             "the other's frame first");
     BoxTree a_tree = tree_of_faces(a), b_tree = tree_of_faces(b);
-    std::vector<FacePair> pairs;
+    FoundPairs found(most);
     for_each_overlap(a_tree, 0, b_tree, 0, [&](std::uint32_t p, std::uint32_t q) {
-        if (simplices_meet(simplex_of(a, p), simplex_of(b, q))) pairs.push_back({p, q});
+        if (simplices_meet(simplex_of(a, p), simplex_of(b, q))) found.add(p, q);
     });
-    sort(pairs);
-    return pairs;
+    return std::move(found).sorted();
+}
+
+std::vector<FacePair> self_intersecting_pairs(const TriangleMesh& mesh, std::size_t most) {
+    require_valid(mesh);
+    BoxTree tree = tree_of_faces(mesh);
+    FoundPairs found(most);
+    for_each_overlap(tree, 0, [&](std::uint32_t p, std::uint32_t q) {
+        if (intersect_beyond_shared(mesh, mesh.faces[p], mesh.faces[q]))
+            found.add(std::min(p, q), std::max(p, q));
+    });
+    return std::move(found).sorted();
+}
+
+std::vector<FacePair> intersecting_pairs(const TriangleMesh& a, const TriangleMesh& b) {
+    return intersecting_pairs(a, b, std::numeric_limits<std::size_t>::max());
 }
 
 std::vector<FacePair> self_intersecting_pairs(const TriangleMesh& mesh) {
-    require_valid(mesh);
-    BoxTree tree = tree_of_faces(mesh);
-    std::vector<FacePair> pairs;
-    for_each_overlap(tree, 0, [&](std::uint32_t p, std::uint32_t q) {
-        if (intersect_beyond_shared(mesh, mesh.faces[p], mesh.faces[q]))
-            pairs.push_back({std::min(p, q), std::max(p, q)});
-    });
-    sort(pairs);
-    return pairs;
+    return self_intersecting_pairs(mesh, std::numeric_limits<std::size_t>::max());
 }
 
 } // namespace echinus

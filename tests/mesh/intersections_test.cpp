@@ -391,3 +391,122 @@ TEST(SelfIntersectingPairs, TakeEdgesWithoutFacesAsFacesWithTwoEqualCorners) {
     ASSERT_EQ(pairs.size(), 1U);
     EXPECT_EQ(pairs[0].b, thread + 1);
 }
+
+// ---- Curves ----
+
+namespace {
+
+std::size_t open_count(const Intersections& found) {
+    return static_cast<std::size_t>(std::count_if(found.curves.begin(), found.curves.end(),
+                                                  [](const IntersectionCurve& c) { return !c.closed; }));
+}
+
+/// The distance of a point from the plane of a face.
+double distance_to_plane(const Vec3f& point, const Corners& face) {
+    const Vec3d origin(face[0]);
+    const Vec3d normal = cross(Vec3d(face[1]) - origin, Vec3d(face[2]) - origin);
+    return std::abs(dot(normal, Vec3d(point) - origin)) / length(normal);
+}
+
+/// In the planes of both faces of some pair.
+bool lies_on_a_pair(const Vec3f& point, const Intersections& found, const TriangleMesh& a,
+                    const TriangleMesh& b) {
+    return std::any_of(found.pairs.begin(), found.pairs.end(), [&](const FacePair& pair) {
+        return distance_to_plane(point, corners_of(a, pair.a)) < 1e-6 &&
+               distance_to_plane(point, corners_of(b, pair.b)) < 1e-6;
+    });
+}
+
+} // namespace
+
+TEST(IntersectionCurves, OfTwoSpheresAreTheCircleInWhichTheyCross) {
+    const TriangleMesh a = make_sphere(1, 120, 61), b = translated(make_sphere(1, 90, 45), {1, 0.01F, 0.02F});
+    const Intersections found = intersections(a, b);
+    EXPECT_EQ(found.pairs, intersecting_pairs(a, b));
+    ASSERT_EQ(found.curves.size(), 1U);
+    EXPECT_TRUE(found.curves[0].closed);
+    EXPECT_NEAR(found.length, 2 * 3.14159265 * std::sqrt(0.75), 0.01);
+    for (const Vec3f& point : found.curves[0].points) ASSERT_TRUE(lies_on_a_pair(point, found, a, b));
+}
+
+// All edges of one meet edges, diagonals and corners of the other: three of its own edges for each corner.
+TEST(IntersectionCurves, AreClosedWhereEdgesMeetEdgesAndCornersFaces) {
+    const TriangleMesh box = make_box({2, 2, 2});
+    for (const std::uint32_t segments : {1U, 2U, 4U}) {
+        const Intersections found = intersections(make_box({2, 2, 2}, segments), translated(box, {1, 1, 1}));
+        ASSERT_EQ(found.curves.size(), 1U) << segments;
+        EXPECT_TRUE(found.curves[0].closed);
+        EXPECT_DOUBLE_EQ(found.length, 6);
+    }
+}
+
+TEST(IntersectionCurves, OfClosedMeshesInGeneralPositionAreClosed) {
+    Random random(6);
+    for (int i = 0; i < 40; ++i) {
+        const TriangleMesh a = make_torus(1, 0.4, 13, 7);
+        const TriangleMesh b = translated(make_sphere(0.8, 11, 7), in_cube(random, 1));
+        const Intersections found = intersections(a, b);
+        EXPECT_EQ(open_count(found), 0U);
+        EXPECT_EQ(found.curves.empty(), found.pairs.empty());
+        const Intersections turned = intersections(b, a);
+        EXPECT_EQ(turned.curves.size(), found.curves.size());
+        EXPECT_NEAR(turned.length, found.length, 1e-5);
+    }
+}
+
+TEST(IntersectionCurves, EndAtTheBorderOfAnOpenSurface) {
+    const Intersections found = intersections(grid(11, 1, {0, 0, 0}), make_sphere(0.5, 40, 21));
+    ASSERT_EQ(found.curves.size(), 1U);
+    EXPECT_FALSE(found.curves[0].closed);
+    EXPECT_NEAR(found.length, 3.14159265 / 4, 0.01); // a quarter of the circle
+    EXPECT_NEAR(found.curves[0].points.front().x * found.curves[0].points.back().x, 0, 1e-6);
+}
+
+TEST(IntersectionCurves, AreNoneWhereFacesOnlyLieOnEachOtherOrTouchInAPoint) {
+    const TriangleMesh sheet = grid(5, 1, {});
+    TriangleMesh one = sheet;
+    one.faces = {sheet.faces[0]};
+    const Intersections flat = intersections(one, sheet);
+    EXPECT_FALSE(flat.pairs.empty());
+    EXPECT_TRUE(flat.curves.empty());
+    const TriangleMesh needle{{{0.3F, 0.4F, 0}, {0.3F, 0.5F, 1}, {0.4F, 0.5F, 1}}, {{0, 1, 2}}};
+    const Intersections touching = intersections(sheet, needle);
+    EXPECT_FALSE(touching.pairs.empty());
+    EXPECT_TRUE(touching.curves.empty());
+    TriangleMesh thread{{{0.3F, 0.4F, -1}, {0.3F, 0.5F, 1}}, {{0, 1, 1}}};
+    EXPECT_EQ(intersections(sheet, thread).pairs.size(), 1U);
+    EXPECT_TRUE(intersections(sheet, thread).curves.empty());
+}
+
+// Two sheets of one mesh cross; and a strip folds through itself next to the vertex that its faces share.
+TEST(IntersectionCurves, OfAMeshWithItselfAreThoseOfItsParts) {
+    const TriangleMesh a = make_sphere(1, 30, 15), b = translated(make_sphere(1, 24, 13), {0.9F, 0.1F, 0});
+    TriangleMesh both = a;
+    for (const Vec3f& v : b.vertices) both.vertices.push_back(v);
+    const auto offset = static_cast<std::uint32_t>(a.vertices.size());
+    for (const Triangle& f : b.faces) both.faces.push_back({f[0] + offset, f[1] + offset, f[2] + offset});
+    const Intersections own = self_intersections(both), of_two = intersections(a, b);
+    EXPECT_EQ(own.pairs.size(), of_two.pairs.size());
+    EXPECT_EQ(own.curves.size(), of_two.curves.size());
+    EXPECT_EQ(open_count(own), 0U);
+    EXPECT_NEAR(own.length, of_two.length, 1e-6);
+    const TriangleMesh fan{{{0, 0, 0}, {2, -1, 0}, {2, 1, 0}, {2, 0, -1}, {2, 0, 1}}, {{0, 1, 2}, {0, 3, 4}}};
+    const Intersections at_a_vertex = self_intersections(fan);
+    ASSERT_EQ(at_a_vertex.curves.size(), 1U);
+    EXPECT_EQ(at_a_vertex.curves[0].points.size(), 2U);
+    EXPECT_DOUBLE_EQ(at_a_vertex.length, 2);
+}
+
+TEST(IntersectionCurves, HaveFiniteEndsWhateverTheFaces) {
+    Random random(7);
+    for (int i = 0; i < 200; ++i) {
+        const TriangleMesh mesh = random_soup(random, 10, 20, i % 4 + 1);
+        for (const Intersections& found : {self_intersections(mesh), intersections(mesh, mesh)}) {
+            EXPECT_TRUE(std::isfinite(found.length));
+            for (const IntersectionCurve& curve : found.curves) {
+                ASSERT_GE(curve.points.size(), 2U);
+                for (const Vec3f& point : curve.points) ASSERT_TRUE(is_finite(point));
+            }
+        }
+    }
+}

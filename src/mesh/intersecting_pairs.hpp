@@ -1,0 +1,16 @@
+#pragma once
+
+#include <echinus/intersections.hpp>
+
+#include <cstddef>
+#include <vector>
+
+namespace echinus {
+
+// The public functions with a limit.
+
+/// @throws Error InvalidMesh also for more than `most` pairs
+std::vector<FacePair> intersecting_pairs(const TriangleMesh& a, const TriangleMesh& b, std::size_t most);
+std::vector<FacePair> self_intersecting_pairs(const TriangleMesh& mesh, std::size_t most);
+
+} // namespace echinus
