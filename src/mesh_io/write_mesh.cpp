@@ -127,18 +127,43 @@ std::string encode_off(const TriangleMesh& mesh) {
     return text;
 }
 
-std::string encode_ply(const TriangleMesh& mesh) {
+std::string encode_painted_ply(const TriangleMesh& mesh, std::span<const Colour> vertex_colours,
+                               std::span<const Colour> face_colours,
+                               std::span<const std::array<std::uint32_t, 2>> edges) {
     const std::string property = std::string("\nproperty ") + (has_origin(mesh) ? "double " : "float ");
+    const auto colour_properties = [](std::span<const Colour> colours) {
+        return colours.empty() ? "" : "\nproperty uchar red\nproperty uchar green\nproperty uchar blue";
+    };
     std::string bytes = "ply\nformat binary_little_endian 1.0\nelement vertex " +
                         std::to_string(mesh.vertices.size()) + property + "x" + property + "y" + property +
-                        "z\nelement face " + std::to_string(mesh.faces.size()) +
-                        "\nproperty list uchar uint vertex_indices\nend_header\n";
-    for_each_position(mesh, [&](const auto& p) { append_little_endian(bytes, p); });
-    for (const Triangle& f : mesh.faces) {
+                        "z" + colour_properties(vertex_colours) + "\nelement face " +
+                        std::to_string(mesh.faces.size()) + "\nproperty list uchar uint vertex_indices" +
+                        colour_properties(face_colours);
+    if (!edges.empty())
+        bytes +=
+            "\nelement edge " + std::to_string(edges.size()) + "\nproperty int vertex1\nproperty int vertex2";
+    bytes += "\nend_header\n";
+    const auto append_colour = [&bytes](std::span<const Colour> colours, std::size_t i) {
+        if (!colours.empty())
+            for (const std::uint8_t share : colours[i]) append_little_endian(bytes, share);
+    };
+    std::size_t vertex = 0;
+    for_each_position(mesh, [&](const auto& p) {
+        append_little_endian(bytes, p);
+        append_colour(vertex_colours, vertex++);
+    });
+    for (std::size_t face = 0; face < mesh.faces.size(); ++face) {
         append_little_endian(bytes, std::uint8_t{3});
-        for (const std::uint32_t vertex : f) append_little_endian(bytes, vertex);
+        for (const std::uint32_t corner : mesh.faces[face]) append_little_endian(bytes, corner);
+        append_colour(face_colours, face);
     }
+    for (const auto& edge : edges)
+        for (const std::uint32_t end : edge) append_little_endian(bytes, end);
     return bytes;
+}
+
+std::string encode_ply(const TriangleMesh& mesh) {
+    return encode_painted_ply(mesh, {}, {}, {});
 }
 
 namespace {

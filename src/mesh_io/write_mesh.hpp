@@ -19,6 +19,16 @@ std::string encode_obj(const TriangleMesh& mesh);
 std::string encode_obj_lines(std::span<const std::array<std::uint32_t, 2>> edges);
 std::string encode_off(const TriangleMesh& mesh);
 std::string encode_ply(const TriangleMesh& mesh); ///< binary, little endian
+
+using Colour = std::array<std::uint8_t, 3>; ///< red, green, blue
+
+/// The same with a colour of each vertex and of each face, since some programs show only one of the two, and
+/// with edges; none of what is empty.
+/// @pre as many colours as vertices and faces
+std::string encode_painted_ply(const TriangleMesh& mesh, std::span<const Colour> vertex_colours,
+                               std::span<const Colour> face_colours,
+                               std::span<const std::array<std::uint32_t, 2>> edges);
+
 std::string encode_stl(const TriangleMesh& mesh); ///< binary; text where the mesh has an origin. Normals
                                                   ///< are computed, 0 for faces without area
 

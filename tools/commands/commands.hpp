@@ -7,6 +7,7 @@
 /// WrongUse when the arguments make no sense (exit status 2); run_program() prints either as one line.
 void add_mesh_command(Command program);
 void add_info_command(Command program);
+void add_check_command(Command program);
 void add_build_command(Command program);
 void add_query_command(Command program);
 void add_simulate_command(Command program);
