@@ -48,8 +48,8 @@ struct CheckOptions {
 /// as accurately as its queries. A mesh may lie inside another without intersecting it.
 /// @returns the meshes that intersect, and those of which one has a vertex inside the other, in ascending
 /// order
-/// @throws Error InvalidMesh as intersections() and self_intersections() do. Of a mesh that is not valid, the
-/// sentence names the number, counted from 0
+/// @throws Error InvalidMesh as intersections() and self_intersections() do; the sentence begins with the
+/// numbers of the meshes, counted from 0
 std::vector<CheckedMeshes> check(std::span<const TriangleMesh> meshes, const CheckOptions& options = {});
 
 } // namespace echinus

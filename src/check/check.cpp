@@ -1,4 +1,5 @@
 #include "geometry/box.hpp"
+#include "geometry/box_tree.hpp"
 #include "geometry/whole_numbers.hpp"
 #include "mesh/require_valid.hpp"
 
@@ -8,13 +9,83 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <cstdint>
 #include <optional>
+#include <queue>
 #include <string>
 #include <utility>
+#include <vector>
 
 namespace echinus {
 
 namespace {
+
+/// Finds the deepest of many vertices inside a map. Of two vertices, the depths differ by no more than the
+/// distance between them, so that one vertex bounds the depths of a box: few need the search for the nearest
+/// face, which is long far from the surface.
+class DeepestVertex {
+  public:
+    /// @param vertices  inside, at least one
+    DeepestVertex(const ExactMapView& map, const std::vector<Vec3f>& points,
+                  const std::vector<std::uint32_t>& vertices)
+        : map_(map), points_(points), vertices_(vertices), tree_(boxes()) {}
+
+    void find(Penetration& deepest) {
+        std::priority_queue<BoundedNode> nodes;
+        nodes.push({bound_of(0, deepest), 0});
+        while (!nodes.empty() && nodes.top().bound >= double{deepest.depth}) {
+            const std::uint32_t index = nodes.top().node;
+            nodes.pop();
+            const BoxTree::Node& node = tree_.node(index);
+            if (node.is_leaf()) {
+                for (std::uint32_t i = node.begin; i < node.end; ++i) depth_at(i, deepest);
+                continue;
+            }
+            tree_.split(index);
+            for (const std::uint32_t child : {node.left, node.right()})
+                nodes.push({bound_of(child, deepest), child});
+        }
+    }
+
+  private:
+    struct BoundedNode {
+        double bound; ///< no vertex of the node is deeper
+        std::uint32_t node;
+
+        bool operator<(const BoundedNode& other) const { return bound < other.bound; }
+    };
+
+    std::vector<BoxTree::Box> boxes() const {
+        std::vector<BoxTree::Box> boxes(vertices_.size());
+        for (std::size_t i = 0; i < boxes.size(); ++i) boxes[i].add(points_[vertices_[i]]);
+        return boxes;
+    }
+
+    std::uint32_t vertex_at(std::uint32_t leaf) const { return vertices_[tree_.leaf(leaf).item]; }
+
+    double depth_at(std::uint32_t leaf, Penetration& deepest) const {
+        const std::uint32_t vertex = vertex_at(leaf);
+        const float depth = contact(map_, points_[vertex]).depth;
+        if (depth > deepest.depth || (depth == deepest.depth && vertex < deepest.deepest_vertex)) {
+            deepest.depth = depth;
+            deepest.deepest_vertex = vertex;
+        }
+        return depth;
+    }
+
+    double bound_of(std::uint32_t index, Penetration& deepest) const {
+        const BoxTree::Node& node = tree_.node(index);
+        // Depths are those of vertices snapped to the lattice, 1.9e-6 of the radius apart, and rounded.
+        const double error = 1e-5 * double{map_.radius};
+        return depth_at(node.begin, deepest) +
+               node.box.farthest_distance(Vec3d(points_[vertex_at(node.begin)])) + error;
+    }
+
+    const ExactMapView& map_;
+    const std::vector<Vec3f>& points_;
+    const std::vector<std::uint32_t>& vertices_;
+    BoxTree tree_;
+};
 
 /// The meshes with what is computed once for each.
 class Meshes {
@@ -33,12 +104,15 @@ class Meshes {
         CheckedMeshes pair;
         pair.a = a;
         pair.b = b;
-        if (a == b) {
-            pair.found = self_intersections(meshes_[a]);
-        } else if (boxes_[a].overlaps(boxes_[b])) {
-            pair.found = intersections(meshes_[a], meshes_[b]);
-            pair.a_in_b = penetration(a, b);
-            pair.b_in_a = penetration(b, a);
+        try {
+            if (a == b)
+                pair.found = self_intersections(meshes_[a]);
+            else if (boxes_[a].overlaps(boxes_[b]))
+                check_two(pair);
+        } catch (const Error& error) {
+            const std::string first = std::to_string(a), second = std::to_string(b);
+            throw Error(error.code(), (a == b ? "mesh " + first : "meshes " + first + " and " + second) +
+                                          ": " + error.what());
         }
         return pair;
     }
@@ -53,6 +127,12 @@ class Meshes {
         } catch (const Error& error) {
             throw Error(error.code(), "mesh " + std::to_string(mesh) + ": " + error.what());
         }
+    }
+
+    void check_two(CheckedMeshes& pair) {
+        pair.found = intersections(meshes_[pair.a], meshes_[pair.b]);
+        pair.a_in_b = penetration(pair.a, pair.b);
+        pair.b_in_a = penetration(pair.b, pair.a);
     }
 
     /// Of a closed mesh. Null also for shapes that no map holds, such as tiny parts that are far apart: what
@@ -77,17 +157,14 @@ class Meshes {
         const ExactMap* map = map_of(of);
         if (map == nullptr) return {};
         const std::vector<Vec3f>& points = meshes_[mesh].vertices;
+        std::vector<std::uint8_t> inside(points.size());
+        contains_batch(*map, points, inside, thread_count_);
         const UsedVertices used(meshes_[mesh].faces, points.size());
-        std::vector<Contact> contacts(points.size());
-        contacts_batch(*map, points, 0, contacts, thread_count_);
-        Penetration found{.known = true};
-        for (std::uint32_t i = 0; i < contacts.size(); ++i) {
-            if (!contacts[i].inside || !used[i]) continue;
-            ++found.vertex_count;
-            if (found.deepest_vertex != kNoIndex && contacts[i].depth <= found.depth) continue;
-            found.deepest_vertex = i;
-            found.depth = contacts[i].depth;
-        }
+        std::vector<std::uint32_t> vertices;
+        for (std::uint32_t i = 0; i < points.size(); ++i)
+            if (inside[i] != 0 && used[i]) vertices.push_back(i);
+        Penetration found{.known = true, .vertex_count = kept_as<std::uint32_t>(vertices.size())};
+        if (!vertices.empty()) DeepestVertex(*map, points, vertices).find(found);
         return found;
     }
 

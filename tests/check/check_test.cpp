@@ -2,6 +2,7 @@
 #include "support/meshes.hpp"
 
 #include <echinus/check.hpp>
+#include <echinus/exact_map.hpp>
 
 #include <gtest/gtest.h>
 
@@ -31,6 +32,28 @@ TEST(Check, FindsWhichMeshesIntersectAndHowDeep) {
     }
     const Vec3f deepest = meshes[0].vertices[pair.a_in_b.deepest_vertex];
     EXPECT_NEAR(deepest.x, 1, 1e-3);
+}
+
+TEST(Check, FindsTheDeepestOfAllVertices) {
+    Random random(1);
+    for (int i = 0; i < 30; ++i) {
+        const std::vector<TriangleMesh> meshes{make_torus(1, 0.4, 31, 17),
+                                               translated(make_sphere(0.7, 23, 17), in_cube(random, 1.2F))};
+        const ExactMap torus = ExactMap::build(meshes[0]);
+        Penetration expected;
+        for (std::uint32_t vertex = 0; vertex < meshes[1].vertices.size(); ++vertex) {
+            const Contact at = contact(torus, meshes[1].vertices[vertex]);
+            expected.vertex_count += at.inside;
+            if (!at.inside || at.depth <= expected.depth) continue;
+            expected.depth = at.depth;
+            expected.deepest_vertex = vertex;
+        }
+        const std::vector<CheckedMeshes> found = check(meshes);
+        const Penetration none, &answer = found.empty() ? none : found.front().b_in_a;
+        EXPECT_EQ(answer.vertex_count, expected.vertex_count);
+        EXPECT_EQ(answer.depth, expected.depth);
+        EXPECT_EQ(answer.deepest_vertex, expected.deepest_vertex);
+    }
 }
 
 TEST(Check, TellsOfABodyThatIntersectsItselfApart) {

@@ -1,3 +1,4 @@
+#include "mesh/intersecting_pairs.hpp"
 #include "support/expectations.hpp"
 #include "support/meshes.hpp"
 
@@ -8,6 +9,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <string>
 #include <tuple>
 #include <utility>
 
@@ -331,6 +333,17 @@ TEST(IntersectingPairs, RefuseMeshesThatNoOtherFunctionTakes) {
     expect_error(ErrorCode::InvalidMesh, "face 3", [&] { self_intersecting_pairs(no_vertex); });
     expect_error(ErrorCode::InvalidMesh, "vertex 2", [&] { self_intersecting_pairs(not_finite); });
     expect_error(ErrorCode::InvalidMesh, "no faces", [&] { self_intersecting_pairs({}); });
+}
+
+TEST(IntersectingPairs, AreRefusedBeyondALimit) {
+    const TriangleMesh box = make_box({1, 1, 1}, 2), other = translated(box, {0.3F, 0.2F, 0.1F});
+    const std::size_t count = intersecting_pairs(box, other).size();
+    EXPECT_EQ(intersecting_pairs(box, other, count), intersecting_pairs(box, other));
+    expect_error(ErrorCode::InvalidMesh, "more than " + std::to_string(count - 1) + " pairs of faces",
+                 [&] { intersecting_pairs(box, other, count - 1); });
+    TriangleMesh doubled = box;
+    doubled.faces.push_back(box.faces[0]);
+    expect_error(ErrorCode::InvalidMesh, "check parts", [&] { self_intersecting_pairs(doubled, 0); });
 }
 
 // ---- A mesh with itself ----
