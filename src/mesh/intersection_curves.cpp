@@ -170,8 +170,8 @@ class Segments {
         std::vector<std::uint32_t> order(ends_.size());
         for (std::uint32_t i = 0; i < order.size(); ++i) order[i] = i;
         std::sort(order.begin(), order.end(), [&](std::uint32_t i, std::uint32_t j) {
-            const auto by_name = ends_[i].parts <=> ends_[j].parts;
-            return by_name != 0 ? by_name < 0 : i < j;
+            const Meeting &p = ends_[i].parts, &q = ends_[j].parts; // libc++ 14 has no <=> of arrays
+            return p != q ? p < q : i < j;
         });
         segments_.resize(ends_.size() / 2);
         const Meeting* last = nullptr;
