@@ -183,12 +183,17 @@ std::vector<CheckedMeshes> check(std::span<const TriangleMesh> meshes, const Che
     std::vector<CheckedMeshes> found;
     const double total = 0.5 * count * (count + 1.0);
     double done = 0;
+    const auto report = [&] {
+        if (options.progress) options.progress(done / total);
+    };
+    if (total > 0) report();
     for (std::uint32_t a = 0; a < count; ++a)
         for (std::uint32_t b = a; b < count; ++b) {
             CheckedMeshes pair = checked.check(a, b);
             if (pair.intersect() || pair.a_in_b.vertex_count != 0 || pair.b_in_a.vertex_count != 0)
                 found.push_back(std::move(pair));
-            if (options.progress) options.progress(++done / total);
+            ++done;
+            report();
         }
     return found;
 }

@@ -128,7 +128,8 @@ TEST(Check, ReportsProgressUpToTheEnd) {
     std::vector<double> shares;
     const TriangleMesh box = make_box({1, 1, 1});
     check(std::vector{box, box, box}, {.progress = [&](double share) { shares.push_back(share); }});
-    ASSERT_EQ(shares.size(), 6U);
+    ASSERT_EQ(shares.size(), 7U);
+    EXPECT_EQ(shares.front(), 0);
     EXPECT_TRUE(std::is_sorted(shares.begin(), shares.end()));
     EXPECT_EQ(shares.back(), 1);
 }
