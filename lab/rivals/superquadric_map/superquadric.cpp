@@ -1,7 +1,7 @@
+#include "rivals/superquadric_map/superquadric.hpp"
 
 #include "directions/face_cone.hpp"
 #include "directions/samples_near.hpp"
-#include "rivals/superquadric_map/superquadric.hpp"
 
 #include <algorithm>
 #include <array>
