@@ -2,6 +2,7 @@
 #include "support/random_points.hpp"
 #include "support/temporary_folder.hpp"
 
+#include <echinus/check.hpp>
 #include <echinus/exact_map.hpp>
 #include <echinus/intersections.hpp>
 #include <echinus/mesh.hpp>
@@ -210,6 +211,66 @@ TEST(CMeshes, IntersectAsInCpp) {
     const std::vector<FacePair> self = self_intersecting_pairs(b);
     EXPECT_FALSE(self.empty());
     EXPECT_TRUE(same_bits(values_of<FacePair>(pairs), std::span<const FacePair>(self)));
+}
+
+TEST(CMeshes, IntersectAlongTheCurvesOfCpp) {
+    const TriangleMesh a = make_box({1, 1, 1});
+    TriangleMesh b = make_sphere(0.6, 12, 8);
+    CArray pairs, curves, points;
+    const auto expect_same = [&](const Intersections& expected) {
+        EXPECT_TRUE(same_bits(values_of<FacePair>(pairs), std::span<const FacePair>(expected.pairs)));
+        const auto sizes = values_of<echinus_intersection_curve>(curves);
+        std::span<const Vec3f> rest = values_of<Vec3f>(points);
+        ASSERT_EQ(sizes.size(), expected.curves.size());
+        for (std::size_t i = 0; i < sizes.size(); ++i) {
+            EXPECT_EQ(sizes[i].closed != 0, expected.curves[i].closed);
+            ASSERT_LE(sizes[i].point_count, rest.size());
+            EXPECT_TRUE(same_bits(rest.first(sizes[i].point_count),
+                                  std::span<const Vec3f>(expected.curves[i].points)));
+            rest = rest.subspan(sizes[i].point_count);
+        }
+        EXPECT_TRUE(rest.empty());
+    };
+    expect_ok(echinus_mesh_intersections(c_mesh_of(a).get(), c_mesh_of(b).get(), out(pairs), out(curves),
+                                         out(points)));
+    expect_same(intersections(a, b));
+    const auto first = static_cast<std::uint32_t>(b.vertices.size());
+    b.vertices.insert(b.vertices.end(), a.vertices.begin(), a.vertices.end());
+    for (const auto& [p, q, r] : a.faces) b.faces.push_back({first + p, first + q, first + r});
+    expect_ok(echinus_mesh_intersections(c_mesh_of(b).get(), nullptr, out(pairs), out(curves), out(points)));
+    EXPECT_FALSE(self_intersections(b).curves.empty());
+    expect_same(self_intersections(b));
+    expect_ok(echinus_mesh_intersections(c_mesh_of(b).get(), nullptr, nullptr, out(curves), out(points)));
+}
+
+TEST(CMeshes, AreCheckedAsInCpp) {
+    TriangleMesh open = make_box({1, 1, 1});
+    open.faces.pop_back();
+    const std::vector<TriangleMesh> meshes{make_sphere(0.6, 12, 8), open, make_sphere(0.1, 9, 5)};
+    std::vector<CMesh> handles;
+    std::vector<const echinus_mesh*> addresses;
+    for (const TriangleMesh& mesh : meshes) addresses.push_back(handles.emplace_back(c_mesh_of(mesh)).get());
+    CArray array;
+    expect_ok(echinus_check(addresses.data(), addresses.size(), 1, out(array)));
+    const auto found = values_of<echinus_checked_meshes>(array);
+    const std::vector<CheckedMeshes> expected = check(meshes);
+    ASSERT_EQ(found.size(), expected.size());
+    ASSERT_EQ(found.size(), 2U);
+    for (std::size_t i = 0; i < found.size(); ++i) {
+        EXPECT_EQ(found[i].a, expected[i].a);
+        EXPECT_EQ(found[i].b, expected[i].b);
+        EXPECT_EQ(found[i].pair_count, expected[i].found.pairs.size());
+        EXPECT_EQ(found[i].curve_count, expected[i].found.curves.size());
+        EXPECT_EQ(found[i].curve_length, expected[i].found.length);
+        EXPECT_EQ(found[i].a_in_b.known != 0, expected[i].a_in_b.known);
+        EXPECT_EQ(found[i].b_in_a.vertex_count, expected[i].b_in_a.vertex_count);
+        EXPECT_EQ(found[i].b_in_a.deepest_vertex, expected[i].b_in_a.deepest_vertex);
+        EXPECT_EQ(found[i].b_in_a.depth, expected[i].b_in_a.depth);
+    }
+    expect_ok(echinus_check(nullptr, 0, 0, out(array)));
+    addresses[1] = nullptr;
+    expect_refused(echinus_check(addresses.data(), addresses.size(), 0, out(array)), ECHINUS_INVALID_ARGUMENT,
+                   "a mesh");
 }
 
 TEST_F(CMeshFile, IsWrittenAndReadAsInCpp) {

@@ -8,6 +8,7 @@
 
 #include <cmath>
 #include <functional>
+#include <iterator>
 #include <limits>
 #include <string_view>
 #include <tuple>
@@ -146,7 +147,13 @@ class Samples {
         part_ = deformable_.get();
         return &part_;
     }
-    echinus_array** list_or_place(echinus_array**) { return array_places_[++array_turn_ % 2].fresh(); }
+    const echinus_mesh* const* list_or_place(const echinus_mesh* const*) {
+        checked_ = mesh_.get();
+        return &checked_;
+    }
+    echinus_array** list_or_place(echinus_array**) {
+        return array_places_[++array_turn_ % std::size(array_places_)].fresh();
+    }
     echinus_mesh** list_or_place(echinus_mesh**) { return mesh_place_.fresh(); }
     echinus_map** list_or_place(echinus_map**) { return map_place_.fresh(); }
     echinus_map_builder** list_or_place(echinus_map_builder**) { return builder_place_.fresh(); }
@@ -189,7 +196,8 @@ class Samples {
     echinus_pose_key key_{.time = 0, .pose = {.rotation = {1, 0, 0, 0}, .translation = {}}};
     echinus_deformable_arrays arrays_ = one_particle(floats_);
     const echinus_deformable* part_ = nullptr;
-    Place<echinus_array, echinus_array_destroy> array_places_[2]; // one call may give two
+    const echinus_mesh* checked_ = nullptr;
+    Place<echinus_array, echinus_array_destroy> array_places_[3]; // one call may give three
     std::size_t array_turn_ = 0;
     Place<echinus_mesh, echinus_mesh_destroy> mesh_place_;
     Place<echinus_map, echinus_map_destroy> map_place_;

@@ -106,6 +106,38 @@ def test_intersections_are_listed_by_pairs():
     assert len(ech.intersecting_pairs(box, ech.Mesh(box.vertices + np.float32(3), box.faces))) == 0
 
 
+def test_meshes_are_checked_for_what_intersects_along_which_curves_and_how_deep():
+    ball = ech.make_sphere(1, 60, 30)
+    moved = ech.Mesh(ball.vertices + np.float32([1.5, 0, 0]), ball.faces)
+    two = ech.intersections(ball, moved)
+    assert np.array_equal(two.pairs, ech.intersecting_pairs(ball, moved))
+    assert two.closed == (True,) and two.curves[0].shape[1] == 3 and two.curves[0].dtype == np.float32
+    assert two.length == pytest.approx(2 * np.pi * np.sqrt(1 - 0.75**2), rel=0.01)
+    assert np.abs(np.linalg.norm(two.curves[0], axis=1) - 1).max() < 0.02
+    both = ech.Mesh(np.concatenate([ball.vertices, moved.vertices]), np.concatenate([ball.faces, moved.faces + len(ball.vertices)]))
+    own = ech.intersections(both)
+    assert len(own.pairs) == len(two.pairs) and own.length == pytest.approx(two.length)
+    sheet = ech.Mesh([[-3, -3, 0.01], [3, -3, 0.01], [0, 6, 0.01]], [[0, 1, 2]])
+    with_itself, with_sheet = sorted(ech.check([both, sheet]), key=lambda pair: pair.b)
+    assert (with_itself.a, with_itself.b, with_itself.a_in_b) == (0, 0, None)
+    assert (with_sheet.a, with_sheet.b, with_sheet.a_in_b) == (0, 1, None)  # no inside
+    assert with_sheet.b_in_a == ech.Penetration(0, None, 0)
+    (pair,) = ech.check([ball, moved], threads=1)
+    assert pair.a_in_b.depth == pytest.approx(0.5, abs=0.01)
+    assert moved.vertices[pair.b_in_a.deepest_vertex][0] == pytest.approx(0.5, abs=0.01)
+    assert ech.check([]) == [] and ech.check([ball]) == []
+    with pytest.raises(ech.Error, match="mesh 1: "):
+        ech.check([ball, ech.Mesh([[0, 0, 0]], [[0, 0, 5]])])
+
+
+def test_the_curves_of_meshes_far_from_0_are_in_their_frame():
+    box = ech.make_box()
+    far = ech.Mesh(np.concatenate([box.vertices, box.vertices + 0.5]) + np.float64([5e6, 0, 0]), np.concatenate([box.faces, box.faces + 8]))
+    found = ech.intersections(far)
+    assert found.curves[0].dtype == np.float64
+    assert found.curves[0][:, 0].min() == pytest.approx(5e6, abs=0.01) and found.length == pytest.approx(3)
+
+
 def test_the_judges_keep_leading_dimensions_and_say_what_nan_is():
     points = points_around(torus(), 60).reshape(3, 20, 3)
     assert ech.winding_number(torus(), points).shape == (3, 20)

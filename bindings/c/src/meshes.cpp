@@ -2,10 +2,13 @@
 #include "handles.hpp"
 #include "options.hpp"
 
+#include <echinus/check.hpp>
 #include <echinus/intersections.hpp>
 #include <echinus/mesh_io.hpp>
 
 #include <algorithm>
+#include <memory>
+#include <utility>
 
 namespace echinus::c {
 
@@ -95,6 +98,39 @@ std::vector<std::uint32_t> dropped_faces(const RepairReport& report) {
                               report.slivers_dropped, report.inner_faces_dropped})
         result.insert(result.end(), faces.begin(), faces.end());
     std::sort(result.begin(), result.end());
+    return result;
+}
+
+/// The array of a result that the caller may do without.
+template <typename T>
+std::unique_ptr<echinus_array> array_unless_null(echinus_array** result, std::vector<T> values) {
+    return result == nullptr ? nullptr : std::make_unique<echinus_array>(array_of(std::move(values)));
+}
+
+std::vector<echinus_intersection_curve> describe(const std::vector<IntersectionCurve>& curves) {
+    std::vector<echinus_intersection_curve> result;
+    for (const IntersectionCurve& curve : curves)
+        result.push_back({static_cast<std::uint32_t>(curve.points.size()), curve.closed ? 1 : 0});
+    return result;
+}
+
+std::vector<Vec3f> points_of(const std::vector<IntersectionCurve>& curves) {
+    std::vector<Vec3f> points;
+    for (const IntersectionCurve& curve : curves)
+        points.insert(points.end(), curve.points.begin(), curve.points.end());
+    return points;
+}
+
+echinus_penetration describe(const Penetration& penetration) {
+    return {penetration.known ? 1 : 0, penetration.vertex_count, penetration.deepest_vertex,
+            penetration.depth};
+}
+
+std::vector<echinus_checked_meshes> describe(const std::vector<CheckedMeshes>& found) {
+    std::vector<echinus_checked_meshes> result;
+    for (const CheckedMeshes& pair : found)
+        result.push_back({pair.a, pair.b, pair.found.pairs.size(), pair.found.curves.size(),
+                          pair.found.length, describe(pair.a_in_b), describe(pair.b_in_a)});
     return result;
 }
 
@@ -223,4 +259,31 @@ echinus_status echinus_mesh_intersecting_pairs(const echinus_mesh* a, const echi
 }
 echinus_status echinus_mesh_self_intersecting_pairs(const echinus_mesh* mesh, echinus_array** pairs) {
     return make(__func__, pairs, [&] { return array_of(self_intersecting_pairs(mesh_at(mesh))); });
+}
+
+echinus_status echinus_mesh_intersections(const echinus_mesh* a, const echinus_mesh* b, echinus_array** pairs,
+                                          echinus_array** curves, echinus_array** points) {
+    for (echinus_array** result : {pairs, curves, points})
+        if (result != nullptr) *result = nullptr;
+    return guarded(__func__, [&] {
+        at(curves, "curves");
+        at(points, "points");
+        const TriangleMesh& mesh = at(a, "a").value;
+        Intersections found = b == nullptr ? self_intersections(mesh) : intersections(mesh, b->value);
+        auto own_pairs = array_unless_null(pairs, std::move(found.pairs));
+        auto own_curves = array_unless_null(curves, describe(found.curves));
+        *points = array_unless_null(points, points_of(found.curves)).release();
+        *curves = own_curves.release();
+        if (pairs != nullptr) *pairs = own_pairs.release();
+    });
+}
+
+echinus_status echinus_check(const echinus_mesh* const* meshes, size_t mesh_count, uint32_t thread_count,
+                             echinus_array** found) {
+    return make(__func__, found, [&] {
+        std::vector<TriangleMesh> copies;
+        for (const echinus_mesh* mesh : values_at(meshes, mesh_count, "meshes"))
+            copies.push_back(at(mesh, "a mesh").value);
+        return array_of(describe(check(copies, {.thread_count = thread_count})));
+    });
 }

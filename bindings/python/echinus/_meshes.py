@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any, Protocol, runtime_checkable
 
@@ -340,6 +341,109 @@ def self_intersecting_pairs(mesh: MeshLike) -> NDArray[np.uint32]:
         Two faces, ascending.
     """
     return _core.self_intersecting_pairs(*arrays_of(mesh))
+
+
+@dataclass(frozen=True)
+class Intersections:
+    """Where surfaces intersect.
+
+    Attributes
+    ----------
+    pairs : ndarray (n, 2) of uint32
+        The pairs of :func:`intersecting_pairs` or :func:`self_intersecting_pairs`.
+    curves : tuple of ndarray (k, 3)
+        The polylines along which faces cross. Coplanar faces, faces without area and faces that touch in a
+        point have no curve.
+    closed : tuple of bool
+        For each curve whether a segment joins its last point to its first.
+    length
+        Of all curves.
+    """
+
+    pairs: NDArray[np.uint32]
+    curves: tuple[NDArray[np.float32] | NDArray[np.float64], ...]
+    closed: tuple[bool, ...]
+    length: float
+
+
+def intersections(a: MeshLike, b: MeshLike | None = None) -> Intersections:
+    """The intersecting faces of ``a`` and ``b``, or of ``a`` alone, and the curves along which they cross.
+
+    Raises
+    ------
+    Error
+        ``invalid_mesh``, also for more than 33 554 432 pairs.
+    """
+    if b is None:
+        return Intersections(**_core.self_intersections(*arrays_of(a)))
+    return Intersections(**_core.intersections(*arrays_of(a), *arrays_of(b)))
+
+
+@dataclass(frozen=True)
+class Penetration:
+    """How far the vertices of one mesh are inside another.
+
+    Attributes
+    ----------
+    vertex_count
+        The number of vertices inside.
+    deepest_vertex
+        ``None`` without a vertex inside.
+    depth
+        The distance of the deepest vertex from the other surface.
+    """
+
+    vertex_count: int
+    deepest_vertex: int | None
+    depth: float
+
+
+@dataclass(frozen=True)
+class CheckedMeshes:
+    """Two of the meshes that were checked, or one and itself.
+
+    Attributes
+    ----------
+    a, b
+        Indices of the meshes; equal for a mesh and itself.
+    found
+        Their intersections. It has no pairs where one mesh is wholly inside the other.
+    a_in_b, b_in_a
+        ``None`` where the other mesh is not closed, and for a mesh and itself.
+    """
+
+    a: int
+    b: int
+    found: Intersections
+    a_in_b: Penetration | None
+    b_in_a: Penetration | None
+
+
+def check(meshes: Sequence[MeshLike], *, threads: int = 0) -> list[CheckedMeshes]:
+    """Finds which meshes intersect each other or themselves, along which curves and how deep.
+
+    Parameters
+    ----------
+    meshes
+        In one frame; open or closed.
+    threads
+        0: all cores.
+
+    Returns
+    -------
+    list of CheckedMeshes
+        Those that intersect, and those of which one has a vertex inside the other, ascending.
+
+    Raises
+    ------
+    Error
+        ``invalid_mesh``; the sentence names the number of the mesh.
+    """
+    found = _core.check([arrays_of(mesh) for mesh in meshes], threads_of(threads))
+    return [
+        CheckedMeshes(a, b, Intersections(**both), *(None if inside is None else Penetration(*inside) for inside in (a_in_b, b_in_a)))
+        for a, b, both, a_in_b, b_in_a in found
+    ]
 
 
 def make_torus(

@@ -3,14 +3,18 @@
 #include "options.hpp"
 #include "values.hpp"
 
+#include <echinus/check.hpp>
 #include <echinus/intersections.hpp>
 #include <echinus/mesh_io.hpp>
 
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
 
+#include <array>
 #include <filesystem>
 #include <string>
+#include <utility>
+#include <vector>
 
 namespace echinus::python {
 
@@ -88,6 +92,56 @@ py::array pair_array(const std::vector<FacePair>& pairs) {
     return result;
 }
 
+/// In the frame of the mesh that has this origin: [n, 3] float32, or float64 where it is not 0.
+py::array curve_array(const IntersectionCurve& curve, const Vec3d& origin) {
+    const auto filled = [&](auto array, const auto& value_of) {
+        auto* to = array.mutable_data();
+        for (const Vec3f& point : curve.points)
+            for (const auto coordinate : value_of(point)) *to++ = coordinate;
+        return py::array(std::move(array));
+    };
+    const std::vector<py::ssize_t> shape{static_cast<py::ssize_t>(curve.points.size()), 3};
+    if (origin == Vec3d{})
+        return filled(py::array_t<float>(shape), [](const Vec3f& p) { return std::array{p.x, p.y, p.z}; });
+    return filled(py::array_t<double>(shape), [&](const Vec3f& p) {
+        return std::array{p.x + origin.x, p.y + origin.y, p.z + origin.z};
+    });
+}
+
+py::dict intersections_dict(const Intersections& found, const Vec3d& origin) {
+    py::list curves, closed;
+    for (const IntersectionCurve& curve : found.curves) {
+        curves.append(curve_array(curve, origin));
+        closed.append(curve.closed);
+    }
+    py::dict result;
+    result["pairs"] = pair_array(found.pairs);
+    result["curves"] = py::tuple(curves);
+    result["closed"] = py::tuple(closed);
+    result["length"] = found.length;
+    return result;
+}
+
+py::object penetration_tuple(const Penetration& penetration) {
+    if (!penetration.known) return py::none();
+    const py::object deepest =
+        penetration.vertex_count == 0 ? py::object(py::none()) : py::cast(penetration.deepest_vertex);
+    return py::make_tuple(penetration.vertex_count, deepest, penetration.depth);
+}
+
+/// [(a, b, intersections, a in b, b in a)] @param given  [(vertices, faces)]
+py::list check_meshes(const std::vector<std::pair<Vertices, Faces>>& given, int threads) {
+    const unsigned workers = thread_count(threads);
+    std::vector<TriangleMesh> meshes;
+    for (const auto& [vertices, faces] : given) meshes.push_back(mesh_of(vertices, faces));
+    const auto found = unlocked([&] { return check(meshes, {.thread_count = workers}); });
+    py::list result;
+    for (const CheckedMeshes& pair : found)
+        result.append(py::make_tuple(pair.a, pair.b, intersections_dict(pair.found, meshes[0].origin),
+                                     penetration_tuple(pair.a_in_b), penetration_tuple(pair.b_in_a)));
+    return result;
+}
+
 } // namespace
 
 py::dict report_dict(const MeshReport& report, const Vec3d& origin) {
@@ -156,6 +210,16 @@ void bind_meshes(py::module_& module) {
         const TriangleMesh mesh = mesh_of(vertices, faces);
         return pair_array(unlocked([&] { return self_intersecting_pairs(mesh); }));
     });
+    module.def("intersections", [](const Vertices& vertices_a, const Faces& faces_a,
+                                   const Vertices& vertices_b, const Faces& faces_b) {
+        const TriangleMesh a = mesh_of(vertices_a, faces_a), b = mesh_of(vertices_b, faces_b);
+        return intersections_dict(unlocked([&] { return intersections(a, b); }), a.origin);
+    });
+    module.def("self_intersections", [](const Vertices& vertices, const Faces& faces) {
+        const TriangleMesh mesh = mesh_of(vertices, faces);
+        return intersections_dict(unlocked([&] { return self_intersections(mesh); }), mesh.origin);
+    });
+    module.def("check", check_meshes);
     module.def("make_torus",
                [](double major, double minor, std::uint32_t major_segments, std::uint32_t minor_segments) {
                    return arrays_of(make_torus(major, minor, major_segments, minor_segments));

@@ -305,6 +305,49 @@ ECHINUS_API echinus_status echinus_mesh_intersecting_pairs(const echinus_mesh* a
 ECHINUS_API echinus_status echinus_mesh_self_intersecting_pairs(const echinus_mesh* mesh,
                                                                 echinus_array** pairs);
 
+/// A polyline along which surfaces intersect.
+typedef struct echinus_intersection_curve {
+    uint32_t point_count;
+    int32_t closed; ///< 1: a segment joins the last point to the first
+} echinus_intersection_curve;
+
+/// Finds the intersecting faces and the curves along which they cross. Coplanar faces, faces without area and
+/// faces that touch in a point have no curve.
+/// @param b       in the frame of a; or NULL for a itself
+/// @param pairs   out, uint32_t[2], as above; or NULL
+/// @param curves  out, echinus_intersection_curve
+/// @param points  out, float[3], local: those of the first curve, then of the next
+/// @return ECHINUS_INVALID_MESH for more than 2^25 pairs
+ECHINUS_API echinus_status echinus_mesh_intersections(const echinus_mesh* a, const echinus_mesh* b,
+                                                      echinus_array** pairs, echinus_array** curves,
+                                                      echinus_array** points);
+
+/// How far the vertices of one mesh are inside another.
+typedef struct echinus_penetration {
+    int32_t known; ///< 1: the other mesh is closed. Otherwise there are no vertices inside
+    uint32_t vertex_count;
+    uint32_t deepest_vertex; ///< ECHINUS_NONE without a vertex inside
+    float depth;             ///< its distance from the other surface
+} echinus_penetration;
+
+/// Two of the meshes that were checked, or one and itself.
+typedef struct echinus_checked_meshes {
+    uint32_t a, b; ///< a <= b; equal for a mesh and itself
+    uint64_t pair_count;
+    uint64_t curve_count;
+    double curve_length; ///< of all curves
+    echinus_penetration a_in_b, b_in_a;
+} echinus_checked_meshes;
+
+/// Finds which meshes intersect each other or themselves, and those of which one has a vertex inside another.
+/// echinus_mesh_intersections() has their curves.
+/// @param meshes        [mesh_count] in one frame
+/// @param thread_count  for the depths; 0: all cores
+/// @param found         out, echinus_checked_meshes, ascending
+/// @return as echinus_mesh_intersections(); ECHINUS_INVALID_MESH also for meshes with different origins
+ECHINUS_API echinus_status echinus_check(const echinus_mesh* const* meshes, size_t mesh_count,
+                                         uint32_t thread_count, echinus_array** found);
+
 // ---- Maps: building and inspecting ----
 
 /// An exact map, a distance map, or a custom map, which calls two functions of the caller.
