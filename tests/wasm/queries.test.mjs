@@ -76,6 +76,25 @@ describe('A mesh', () => {
         assert.deepEqual([...both.selfIntersectingPairs()], [0, 2]);
         assert.throws(() => sheet.intersectingPairs({}), { code: 'InvalidArgument' });
     });
+    test('is checked against others and itself, with the curves and depths', () => {
+        const torus = echinus.makeTorus(1, 0.4, 24, 12);
+        const needle = echinus.makeMesh([1, 0, 0, 1.1, 0, 2, 1, 0.1, 2], [0, 1, 2]);
+        const { pairs, curves } = torus.intersections(needle);
+        assert.deepEqual([...pairs], [...torus.intersectingPairs(needle)]);
+        assert.equal(curves.length, 1);
+        assert.equal(curves[0].closed, false);
+        assert.ok(curves[0].points.length >= 6 && curves[0].points.every((x) => Math.abs(x) < 1.2));
+        assert.deepEqual(torus.intersections(), { pairs: new Uint32Array(0), curves: [] });
+        const [found, ...others] = echinus.check([torus, needle]);
+        assert.equal(others.length, 0);
+        assert.deepEqual([found.a, found.b, found.pairCount, found.curveCount], [0, 1, pairs.length / 2, 1]);
+        assert.equal(found.aInB, null); // a single face has no inside
+        assert.deepEqual([found.bInA.vertexCount, found.bInA.deepestVertex], [1, 0]);
+        assert.ok(Math.abs(found.bInA.depth - 0.39) < 0.02);
+        assert.deepEqual(echinus.check([]), []);
+        assert.throws(() => echinus.check([torus, {}]), { code: 'InvalidArgument' });
+        assert.throws(() => torus.intersections({}), { code: 'InvalidArgument' });
+    });
     test('is read from the bytes of a file', () => {
         const obj = 'v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv .1e+1 0.5 1e-3\nf 1 2 3 4\nf 1 2 5\n';
         const mesh = echinus.readMesh(new TextEncoder().encode(obj), 'A.OBJ');

@@ -96,6 +96,11 @@ export class Echinus {
     makeTorus(majorRadius: number, minorRadius: number, majorSegments: number, minorSegments: number): Mesh;
     makeSphere(radius: number, meridianCount: number, parallelCount: number): Mesh;
     makeBox(size: Vec3, segments?: number): Mesh;
+    /**
+     * Finds which meshes intersect each other or themselves, and those of which one has a vertex inside
+     * another (echinus/check.hpp). All must lie in one frame. Mesh.intersections() has the curves.
+     */
+    check(meshes: readonly Mesh[]): CheckedMeshes[];
 
     /**
      * @param options  as under `map` in a scene (docs/scenes.md), as an object or a JSON text; {} is an exact map
@@ -206,9 +211,39 @@ export class Mesh extends Deletable {
     intersectingPairs(other: Mesh): Uint32Array;
     /** Pairs of faces of this mesh that intersect other than in shared vertices and edges, ascending. @returns [2 pair_count] */
     selfIntersectingPairs(): Uint32Array;
+    /** The intersecting faces of this mesh and the other, or of this mesh alone, and the curves along which they cross. */
+    intersections(other?: Mesh): Intersections;
     /** A reference by brute force over all faces: 1 inside a closed mesh, 0 outside. */
     windingNumber(point: Vec3): number;
     unsignedDistance(point: Vec3): number;
+}
+
+/** Where surfaces intersect. */
+export interface Intersections {
+    /** [2 pair_count] */
+    pairs: Uint32Array;
+    /** The points [3 point_count] of polylines; a closed one also joins its last point to its first. */
+    curves: { points: Float32Array; closed: boolean }[];
+}
+
+/** How far the vertices of one mesh are inside another: the depth is the distance of the deepest one from the other surface. */
+export interface Penetration {
+    vertexCount: number;
+    /** null without a vertex inside. */
+    deepestVertex: number | null;
+    depth: number;
+}
+
+/** Two of the meshes that were checked, by index, or one and itself. */
+export interface CheckedMeshes {
+    a: number;
+    b: number;
+    pairCount: number;
+    curveCount: number;
+    curveLength: number;
+    /** null where the other mesh is not closed, and for a mesh and itself. */
+    aInB: Penetration | null;
+    bInA: Penetration | null;
 }
 
 export type Repair = 'duplicate_faces' | 'doubled_patches' | 'inside_out' | 'seams' | 'slivers' | 'orientation';

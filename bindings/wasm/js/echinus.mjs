@@ -100,6 +100,10 @@ export class Echinus {
         return Mesh.box(this.#core, size, segments);
     }
 
+    check(meshes) {
+        return Mesh.check(this.#core, meshes);
+    }
+
     buildMap(mesh, options = {}) {
         return buildMap(this.#core, mesh, options);
     }

@@ -1,6 +1,6 @@
 import { Handle, requireOwn } from './core.mjs';
 import { refuse, requireCount, requirePoint } from './errors.mjs';
-import { meshReport, repairOptions, repairReport, repairs } from './structs.mjs';
+import { checkedMeshes, meshReport, repairOptions, repairReport, repairs } from './structs.mjs';
 
 const FAULTS = ['borderEdges', 'nonmanifoldEdges', 'misorientedEdges', 'duplicateFaces', 'degenerateFaces'];
 
@@ -77,6 +77,27 @@ export class Mesh extends Handle {
         return this.core.copyArray(this.core.make('echinus_mesh_self_intersecting_pairs', this.address), Uint32Array, 2);
     }
 
+    intersections(other) {
+        const { core } = this;
+        const [pairs, curves, points] = core.makeAll(3, 'echinus_mesh_intersections', this.address, other === undefined ? 0 : requireOwn(core, other, Mesh));
+        const found = { pairs: core.copyArray(pairs, Uint32Array, 2), curves: [] };
+        const [sizes, positions] = [core.copyArray(curves, Uint32Array, 2), core.copyArray(points, Float32Array, 3)];
+        for (let i = 0, at = 0; i < sizes.length; i += 2) {
+            found.curves.push({ points: positions.slice(at, at + 3 * sizes[i]), closed: sizes[i + 1] !== 0 });
+            at += 3 * sizes[i];
+        }
+        return found;
+    }
+
+    static check(core, meshes) {
+        const addresses = Uint32Array.from(meshes, (mesh) => requireOwn(core, mesh, Mesh));
+        const array = core.withCopies([addresses], (list) => core.make('echinus_check', list, addresses.length, 1));
+        const first = core.call('echinus_array_data', array) >>> 0;
+        const found = Array.from({ length: core.call('echinus_array_count', array) }, (_, i) => core.read(checkedMeshes, first + i * checkedMeshes.bytes));
+        core.call('echinus_array_destroy', array);
+        return found.map(({ aInB, bInA, ...both }) => ({ ...both, aInB: penetrationOf(aInB), bInA: penetrationOf(bInA) }));
+    }
+
     weld() {
         return new Mesh(this.core, this.core.make('echinus_mesh_weld', this.address));
     }
@@ -104,6 +125,10 @@ export class Mesh extends Handle {
         this.core.do(name, this.address, ...this.core.vectorsAt(requirePoint(point, 'the point')), this.core.scratch);
         return this.core.copyDoubles(this.core.scratch, 1)[0];
     }
+}
+
+function penetrationOf({ known, vertexCount, deepestVertex, depth }) {
+    return known ? { vertexCount, deepestVertex: vertexCount ? deepestVertex : null, depth } : null;
 }
 
 export function asVertices(values) {

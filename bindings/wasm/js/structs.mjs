@@ -24,6 +24,13 @@ export const repairReport = { bytes: 104, members: {
     verticesWelded: [72, 'BigUint64'], sliversDropped: [80, 'BigUint64'], facesTurned: [88, 'BigUint64'],
     seamsFilled: [96, 'BigUint64'],
 } };
+export const penetration = { bytes: 16, members: {
+    known: [0, 'Int32'], vertexCount: [4, 'Uint32'], deepestVertex: [8, 'Uint32'], depth: [12, 'Float32'],
+} };
+export const checkedMeshes = { bytes: 64, members: {
+    a: [0, 'Uint32'], b: [4, 'Uint32'], pairCount: [8, 'BigUint64'], curveCount: [16, 'BigUint64'],
+    curveLength: [24, 'Float64'], aInB: [32, penetration], bInA: [48, penetration],
+} };
 export const mapInfo = { bytes: 72, members: {
     size: [0, 'Uint32'], kind: [4, 'Int32'], centre: [8, 'Float32', 3], radius: [20, 'Float32'],
     faceCount: [24, 'Uint32'], byteCount: [32, 'BigUint64'], sourceHash: [40, 'BigUint64'], origin: [48, 'Float64', 3],

@@ -45,6 +45,16 @@ static_assert(sizeof(echinus_repair_report) == 104 && offsetof(echinus_repair_re
               offsetof(echinus_repair_report, slivers_dropped) == 80 &&
               offsetof(echinus_repair_report, faces_turned) == 88 &&
               offsetof(echinus_repair_report, seams_filled) == 96);
+static_assert(sizeof(echinus_penetration) == 16 && offsetof(echinus_penetration, known) == 0 &&
+              offsetof(echinus_penetration, vertex_count) == 4 &&
+              offsetof(echinus_penetration, deepest_vertex) == 8 &&
+              offsetof(echinus_penetration, depth) == 12);
+static_assert(sizeof(echinus_checked_meshes) == 64 && offsetof(echinus_checked_meshes, a) == 0 &&
+              offsetof(echinus_checked_meshes, b) == 4 && offsetof(echinus_checked_meshes, pair_count) == 8 &&
+              offsetof(echinus_checked_meshes, curve_count) == 16 &&
+              offsetof(echinus_checked_meshes, curve_length) == 24 &&
+              offsetof(echinus_checked_meshes, a_in_b) == 32 &&
+              offsetof(echinus_checked_meshes, b_in_a) == 48);
 static_assert(sizeof(echinus_map_info) == 72 && offsetof(echinus_map_info, size) == 0 &&
               offsetof(echinus_map_info, kind) == 4 && offsetof(echinus_map_info, centre) == 8 &&
               offsetof(echinus_map_info, radius) == 20 && offsetof(echinus_map_info, face_count) == 24 &&
