@@ -352,7 +352,7 @@ def label_corpus(results):
 
 
 def label_python(results):
-    rows = [["query", "points in a call", "C++, ns a point", "Python with `out=`, %", "Python, %"]]
+    rows = [["query", "points in a call", "C++, ns per point", "Python with `out=`, %", "Python, %"]]
     for query in results.distinct("kind", task="python"):
         for call in results.distinct("call", task="python"):
             cpp, kept, new = (float(results.where(task="python", kind=query, call=call, system=s)[0]["ns"]) for s in ("C++", "Python, out=", "Python"))

@@ -45,7 +45,7 @@ def plot(panels, path, columns=1, sharey=False, size=(7, 4.2)):
 
 def sets(rows, x, x_label, title=""):
     """A diagram for each of U, S and C."""
-    return [(curves_of([r for r in rows if r["set"] == name], x, nanoseconds), x_label, "ns a particle" if name == "U" else "",
+    return [(curves_of([r for r in rows if r["set"] == name], x, nanoseconds), x_label, "ns per particle" if name == "U" else "",
              f"{title}{name}") for name in "USC"]
 
 
@@ -78,7 +78,7 @@ def depth_percent(r):
 
 def draw(task, folder, images):
     rows = records(folder, task)
-    ns, wrong, size = "ns a particle", "on the wrong side, %", "MB"
+    ns, wrong, size = "ns per particle", "on the wrong side, %", "MB"
     if task in ("contains", "contacts"):
         first = [r for r in rows if r["mesh"] == rows[0]["mesh"] and r["set"] == "S" and r["call"] == rows[0]["call"]]
         plot([(curves_of(first, wrong_percent, nanoseconds), wrong, ns, "")], images / f"{task}_time_error.svg")
@@ -107,14 +107,14 @@ def draw(task, folder, images):
         curves = {}
         for r in falls:
             curves.setdefault(r["method"], ([], True))[0].append((float(r["particles"]), float(r["frame_ms"])))
-        plot([(curves, "particles", "ms a frame", "")], images / "surfaces_particles.svg")
+        plot([(curves, "particles", "ms per frame", "")], images / "surfaces_particles.svg")
     elif task == "engines":
         curves = {}
         for r in rows:
             if (r["model"], r["setup"], r["status"]) == ("horse", "recommended", "done") and r["contact_ms"]:
                 point = (float(r["side"]) ** 2, float(r["contact_ms"]))
                 curves.setdefault(r["engine"], ([], "Echinus" in r["engine"]))[0].append(point)
-        plot([(curves, "particles", "ms a frame", "")], images / "engines_particles.svg")
+        plot([(curves, "particles", "ms per frame", "")], images / "engines_particles.svg")
 
 
 def main():
