@@ -51,6 +51,12 @@ inline std::string number_text(double number) {
     return digits;
 }
 
+/// Of an index that is out of range. @param name  of what is counted, such as "collider"
+inline std::string no_such_text(const std::string& name, const std::string& index, std::size_t count) {
+    return "there is no " + name + " " + index + "; there " +
+           (count == 1 ? "is 1" : "are " + std::to_string(count));
+}
+
 /// Levenshtein's distance: insertions, deletions and replacements that make one word the other.
 inline std::size_t edit_distance(std::string_view a, std::string_view b) {
     std::vector<std::size_t> row(b.size() + 1);

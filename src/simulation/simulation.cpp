@@ -72,24 +72,24 @@ const SimulationProfile& Simulation::profile() const {
 
 void Simulation::set_collider_velocity(std::size_t collider_index, const Vec3d& linear,
                                        const Vec3d& angular) {
-    if (!is_met(collider_index < colliders().size(), "there is no collider of this index")) return;
+    if (!is_in_range(collider_index, colliders().size(), "collider")) return;
     solver_->motions.keep_velocity(collider_index);
     solver_->colliders[collider_index].linear_velocity = linear;
     solver_->colliders[collider_index].angular_velocity = angular;
 }
 
 void Simulation::set_collider_pose(std::size_t collider_index, const RigidTransform& pose) {
-    if (!is_met(collider_index < colliders().size(), "there is no collider of this index")) return;
+    if (!is_in_range(collider_index, colliders().size(), "collider")) return;
     solver_->motions.lead_to(collider_index, solver_->name_of_collider(collider_index), pose);
 }
 
 void Simulation::set_collider_keyframes(std::size_t collider_index, std::vector<PoseKey> keys) {
-    if (!is_met(collider_index < colliders().size(), "there is no collider of this index")) return;
+    if (!is_in_range(collider_index, colliders().size(), "collider")) return;
     solver_->motions.follow(collider_index, solver_->name_of_collider(collider_index), std::move(keys));
 }
 
 void Simulation::set_collider_free(std::size_t collider_index, double mass) {
-    if (!is_met(collider_index < colliders().size(), "there is no collider of this index")) return;
+    if (!is_in_range(collider_index, colliders().size(), "collider")) return;
     solver_->set_free(collider_index, mass);
 }
 
@@ -98,17 +98,17 @@ void Simulation::teleport(const Teleport& teleport) {
 }
 
 void Simulation::set_collider_vertices(std::size_t collider_index, std::span<const Vec3f> vertices_local) {
-    if (!is_met(collider_index < colliders().size(), "there is no collider of this index")) return;
+    if (!is_in_range(collider_index, colliders().size(), "collider")) return;
     solver_->lead_vertices(collider_index, vertices_local);
 }
 
 void Simulation::set_collider_cache(std::size_t collider_index, VertexCache cache) {
-    if (!is_met(collider_index < colliders().size(), "there is no collider of this index")) return;
+    if (!is_in_range(collider_index, colliders().size(), "collider")) return;
     solver_->follow_cache(collider_index, std::move(cache));
 }
 
 Load Simulation::load_on(std::size_t collider_index) const {
-    if (!is_met(collider_index < colliders().size(), "there is no collider of this index")) return {};
+    if (!is_in_range(collider_index, colliders().size(), "collider")) return {};
     return solver_->load_on(collider_index);
 }
 
@@ -121,7 +121,7 @@ std::span<const ContactPoint> Simulation::contact_points() const {
 }
 
 void Simulation::set_particle_velocity(std::size_t particle, const Vec3d& velocity) {
-    if (!is_met(particle < deformable().particle_count(), "there is no particle of this index")) return;
+    if (!is_in_range(particle, deformable().particle_count(), "particle")) return;
     solver_->set_particle_velocity(particle, velocity);
 }
 

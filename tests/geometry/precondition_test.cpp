@@ -2,6 +2,7 @@
 #include <echinus/error.hpp>
 #include <echinus/exact_map.hpp>
 #include <echinus/mesh.hpp>
+#include <echinus/particle_collision.hpp>
 #include <echinus/simulation.hpp>
 
 #include <gtest/gtest.h>
@@ -52,6 +53,18 @@ TEST(Precondition, CallsTheHandlerAndLeavesTheOutputAsItWasWhereSizesDiffer) {
     EXPECT_EQ(last_violation, "classify_batch: there are not as many answers as points");
     contains_batch(Collider{.map = map}, points, inside);
     EXPECT_EQ(inside[1], 7);
+}
+
+TEST(Precondition, NamesTheIndexThatIsOutOfRangeAndTheCount) {
+    const NotedViolations noted;
+    Simulation simulation = small_simulation();
+    simulation.set_particle_velocity(9, {1, 0, 0});
+    EXPECT_EQ(last_violation, "there is no particle 9; there are 9");
+    (void)simulation.load_on(2);
+    EXPECT_EQ(last_violation, "there is no collider 2; there are 0");
+    ParticleCollision particles({{.map = ExactMap::build(make_box({1, 1, 1}))}}, 0.01);
+    particles.set_collider_friction(1, 0.5);
+    EXPECT_EQ(last_violation, "there is no collider 1; there is 1");
 }
 
 TEST(Precondition, ThrowsALogicErrorByDefaultAndChangesNothing) {

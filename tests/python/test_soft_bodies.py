@@ -254,7 +254,7 @@ def test_what_steers_no_collider_is_refused_and_changes_nothing():
             lambda: simulation.set_collider_vertices(index, FLOOR_MESH.vertices),
             lambda: simulation.load_on(index),
         ):
-            with pytest.raises(IndexError, match=f"there is no collider {index}; there are 1"):
+            with pytest.raises(IndexError, match=f"there is no collider {index}; there is 1"):
                 call()
     few, bad = FLOOR_MESH.vertices[1:], FLOOR_MESH.vertices.copy()
     bad[3] = np.nan

@@ -1,6 +1,7 @@
 // Errors, arrays, the version and the instruction sets.
 
 #include "border.hpp"
+#include "files/text.hpp"
 
 #include <echinus/error.hpp>
 #include <echinus/instruction_set.hpp>
@@ -87,9 +88,7 @@ echinus_status note_error(const char* function) noexcept {
 }
 
 void require_index(std::size_t index, std::size_t count, const char* name) {
-    if (index >= count)
-        throw WrongArgument("there is no " + std::string(name) + " " + std::to_string(index) +
-                            "; there are " + std::to_string(count));
+    if (index >= count) throw WrongArgument(no_such_text(name, std::to_string(index), count));
 }
 
 std::size_t times(std::size_t count, std::size_t width, const char* name) {

@@ -1,5 +1,7 @@
 #pragma once
 
+#include "files/text.hpp"
+
 #include <echinus/geometry.hpp>
 #include <echinus/mesh.hpp>
 
@@ -43,8 +45,7 @@ inline std::tuple<double, double, double, double> to_python(const Rotation& rota
 /// @throws IndexError
 inline std::size_t index_below(std::size_t count, std::int64_t index, const char* what) {
     if (index < 0 || static_cast<std::size_t>(index) >= count)
-        throw py::index_error("there is no " + std::string(what) + " " + std::to_string(index) +
-                              "; there are " + std::to_string(count));
+        throw py::index_error(no_such_text(what, std::to_string(index), count));
     return static_cast<std::size_t>(index);
 }
 

@@ -88,7 +88,7 @@ export class ContactBuffer extends Buffer {
         return this.#bytes;
     }
     at(index) {
-        if (!(Number.isInteger(index) && index >= 0 && index < this.length)) refuse(`there is no contact ${String(index)}; there are ${this.length}`);
+        if (!(Number.isInteger(index) && index >= 0 && index < this.length)) refuse(`there is no contact ${String(index)}; there ${this.length === 1 ? 'is' : 'are'} ${this.length}`);
         return readContact(this.core, this.address + ContactBuffer.BYTES * index);
     }
 }

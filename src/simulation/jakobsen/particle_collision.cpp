@@ -171,20 +171,20 @@ ParticleCollision::ParticleCollision(ParticleCollision&& other) noexcept = defau
 ParticleCollision& ParticleCollision::operator=(ParticleCollision&& other) noexcept = default;
 
 void ParticleCollision::set_collider_pose(std::size_t collider_index, const RigidTransform& pose) {
-    if (!is_met(collider_index < state_->colliders.size(), "there is no collider of this index")) return;
+    if (!is_in_range(collider_index, state_->colliders.size(), "collider")) return;
     echinus::require_valid(pose, name_of(state_->colliders[collider_index], collider_index));
     state_->next[collider_index] = {pose.rotation.normalised(), pose.translation};
 }
 
 void ParticleCollision::place_collider(std::size_t collider_index, const RigidTransform& pose) {
-    if (!is_met(collider_index < state_->colliders.size(), "there is no collider of this index")) return;
+    if (!is_in_range(collider_index, state_->colliders.size(), "collider")) return;
     set_collider_pose(collider_index, pose);
     state_->colliders[collider_index].pose = *std::exchange(state_->next[collider_index], std::nullopt);
     state_->collisions.reset();
 }
 
 void ParticleCollision::set_collider_friction(std::size_t collider_index, double friction) {
-    if (!is_met(collider_index < state_->colliders.size(), "there is no collider of this index")) return;
+    if (!is_in_range(collider_index, state_->colliders.size(), "collider")) return;
     require_ranges(ParticleCollisionOptions{.friction = friction});
     state_->frictions[collider_index] = friction;
 }
