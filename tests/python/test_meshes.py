@@ -47,7 +47,7 @@ def test_anything_with_vertices_and_faces_is_a_mesh():
     theirs = types.SimpleNamespace(vertices=torus().vertices.astype(np.float64), faces=torus().faces.astype(np.int64))
     assert ech.ExactMap(theirs).source_hash == ech.ExactMap(torus()).source_hash
     assert ech.inspect(theirs) == ech.inspect(torus())
-    with pytest.raises(TypeError, match="a mesh has .vertices and .faces; list does not: .* or echinus.read_mesh"):
+    with pytest.raises(TypeError, match="mesh must have .vertices and .faces, which list has not: .* or echinus.read_mesh"):
         ech.ExactMap([1, 2, 3])
 
 

@@ -168,7 +168,7 @@ class SurfaceCollision:
     ) -> None:
         options = dict(locals())
         models = [collider._arguments() for collider in list_of_kind("colliders", colliders, Collider)]
-        start, joined = _core.float_array(positions), _core.face_array(faces)
+        start, joined = _core.float_array(positions, "positions"), _core.face_array(faces)
         self._collision = _core.SurfaceCollision(start, joined, models, number("thickness", thickness), options)
 
     def set_collider_pose(self, collider: int, position: Sequence[float], rotation: Sequence[float] = (1, 0, 0, 0)) -> None:

@@ -410,7 +410,7 @@ class ExactMap(_Map[_core.ExactMap]):
         threads
             0: all cores. The answers do not depend on it.
         """
-        start, end = np.asanyarray(start), np.asanyarray(end)
+        start, end = _core.number_array(start, "start"), _core.number_array(end, "end")
         if start.shape != end.shape:
             try:
                 start, end = np.broadcast_arrays(start, end)

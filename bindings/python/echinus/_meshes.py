@@ -79,16 +79,22 @@ def as_mesh(mesh: MeshLike) -> Mesh:
     TypeError
         The object has no such attributes.
     """
-    if isinstance(mesh, Mesh):
-        return mesh
-    if not isinstance(mesh, MeshLike):
-        raise TypeError(f"a mesh has .vertices and .faces; {type(mesh).__name__} does not: use echinus.Mesh(vertices, faces), or echinus.read_mesh(path) for a file")
-    return Mesh(mesh.vertices, mesh.faces)
+    return _mesh_of(mesh, "mesh")
 
 
-def arrays_of(mesh: MeshLike) -> tuple[NDArray[np.float32] | NDArray[np.float64], NDArray[np.uint32]]:
-    mesh = as_mesh(mesh)
+def arrays_of(given: MeshLike, name: str = "mesh") -> tuple[NDArray[np.float32] | NDArray[np.float64], NDArray[np.uint32]]:
+    mesh = _mesh_of(given, name)
     return mesh.vertices, mesh.faces
+
+
+def _mesh_of(given: MeshLike, name: str) -> Mesh:
+    if isinstance(given, Mesh):
+        return given
+    if not isinstance(given, MeshLike):
+        raise TypeError(
+            f"{name} must have .vertices and .faces, which {type(given).__name__} has not: use echinus.Mesh(vertices, faces), or echinus.read_mesh(path) for a file"
+        )
+    return Mesh(given.vertices, given.faces)
 
 
 def read_mesh(path: Path) -> Mesh:
@@ -329,7 +335,7 @@ def intersecting_pairs(a: MeshLike, b: MeshLike) -> NDArray[np.uint32]:
     ndarray (n, 2) of uint32
         A face of ``a`` and one of ``b``, ascending.
     """
-    return _core.intersecting_pairs(*arrays_of(a), *arrays_of(b))
+    return _core.intersecting_pairs(*arrays_of(a, "a"), *arrays_of(b, "b"))
 
 
 def self_intersecting_pairs(mesh: MeshLike) -> NDArray[np.uint32]:
@@ -375,8 +381,8 @@ def intersections(a: MeshLike, b: MeshLike | None = None) -> Intersections:
         ``invalid_mesh``, also for more than 33 554 432 pairs.
     """
     if b is None:
-        return Intersections(**_core.self_intersections(*arrays_of(a)))
-    return Intersections(**_core.intersections(*arrays_of(a), *arrays_of(b)))
+        return Intersections(**_core.self_intersections(*arrays_of(a, "a")))
+    return Intersections(**_core.intersections(*arrays_of(a, "a"), *arrays_of(b, "b")))
 
 
 @dataclass(frozen=True)
@@ -439,7 +445,7 @@ def check(meshes: Sequence[MeshLike], *, threads: int = 0) -> list[CheckedMeshes
     Error
         ``invalid_mesh``; the sentence names the number of the mesh.
     """
-    found = _core.check([arrays_of(mesh) for mesh in meshes], threads_of(threads))
+    found = _core.check([arrays_of(mesh, f"meshes[{i}]") for i, mesh in enumerate(meshes)], threads_of(threads))
     return [
         CheckedMeshes(a, b, Intersections(**both), *(None if inside is None else Penetration(*inside) for inside in (a_in_b, b_in_a)))
         for a, b, both, a_in_b, b_in_a in found

@@ -302,8 +302,8 @@ class Simulation:
         folders = [model_folders] if isinstance(model_folders, (str, bytes, os.PathLike)) else model_folders
         files = _Files([*(pathlib.Path(path_of(each)) for each in folders), folder, folder / ".." / "models", pathlib.Path("models")])
         loaded = [_load_collider(parsed, i, given, files, threads) for i, given in enumerate(models)]
-        start, threads_of_cloth = files.cloth(parsed.cloth_file, cloth)
-        rest, _ = files.cloth(parsed.rest_file, rest_cloth)
+        start, threads_of_cloth = files.cloth(parsed.cloth_file, cloth, "cloth")
+        rest, _ = files.cloth(parsed.rest_file, rest_cloth, "rest_cloth")
         bodies = [None if name is None else files.find(name) for name in parsed.body_files]
         maps, caches = [part[0] for part in loaded], [part[1] for part in loaded]
         core = parsed.simulate(maps, caches, start, rest, threads_of_cloth, bodies)
@@ -459,7 +459,7 @@ class Simulation:
         Error
             ``invalid_options``; then nothing has changed.
         """
-        self._simulation.set_collider_vertices(index("collider", collider), _core.float_array(vertices))
+        self._simulation.set_collider_vertices(index("collider", collider), _core.float_array(vertices, "vertices"))
 
     def set_collider_cache(self, collider: int, cache: VertexCache) -> None:
         """Each frame moves the vertices of a model to those of the cache at the frame's end.
@@ -568,10 +568,10 @@ class _Files:
     def find(self, name: str) -> pathlib.Path:
         return pathlib.Path(_core.find_model(name, self.folders))
 
-    def cloth(self, name: str | None, given: MeshLike | None) -> _Drawn:
+    def cloth(self, file: str | None, given: MeshLike | None, argument: str) -> _Drawn:
         if given is not None:
-            return arrays_of(given), []
-        return (None, []) if name is None else _core.read_mesh_and_edges(self.find(name))
+            return arrays_of(given, argument), []
+        return (None, []) if file is None else _core.read_mesh_and_edges(self.find(file))
 
     def cache(self, cache: tuple[str, float, str], mesh: _core.Arrays) -> _core.VertexCache:
         name, frames_per_second, animation = cache
@@ -588,7 +588,7 @@ def _load_collider(
             raise ValueError(f"collider {index} has a vertex cache, which takes a mesh as its model, not a map")
         return _core.ColliderMap(given._built), None
     if given is not None:
-        arrays = arrays_of(given)
+        arrays = arrays_of(given, "model")
     else:
         arrays = scene.make_model(index) if file is None else arrays_of(read_mesh(files.find(file)))
     arrays = scene.repair(index, *arrays)

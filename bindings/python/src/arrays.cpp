@@ -250,21 +250,21 @@ py::array vertex_array(const py::object& vertices, const py::array_t<std::uint32
     const py::array array = number_array(vertices, "vertices");
     require_rows_of(3, array, "vertices", "");
     const bool holds_floats = array.dtype().kind() == 'f' && array.itemsize() <= py::ssize_t{sizeof(float)};
-    if (holds_floats) return float_array(array);
+    if (holds_floats) return float_array(array, "vertices");
     const py::array_t<double, py::array::c_style | py::array::forcecast> numbers(array);
     const std::span<const std::uint32_t> used(cells.data(), static_cast<std::size_t>(cells.size()));
-    if (to_local_frame(doubles_of(numbers), used).origin == Vec3d{}) return float_array(array);
+    if (to_local_frame(doubles_of(numbers), used).origin == Vec3d{}) return float_array(array, "vertices");
     return numbers.attr("copy")();
 }
 
-py::array_t<float> float_array(const py::object& vertices) {
-    const py::array array = number_array(vertices, "vertices");
-    require_rows_of(3, array, "vertices", "");
+py::array_t<float> float_array(const py::object& points, const char* name) {
+    const py::array array = number_array(points, name);
+    require_rows_of(3, array, name, "");
     if (py::array_t<float, py::array::c_style>::check_(array) && is_aligned(array)) return array;
-    const Points points(array, "vertices");
-    py::array_t<float> floats({static_cast<py::ssize_t>(points.size()), py::ssize_t{3}});
+    const Points read(array, name);
+    py::array_t<float> floats({static_cast<py::ssize_t>(read.size()), py::ssize_t{3}});
     auto* to = reinterpret_cast<Vec3f*>(floats.mutable_data());
-    for (std::size_t i = 0; i < points.size(); ++i) to[i] = points.span()[i];
+    for (std::size_t i = 0; i < read.size(); ++i) to[i] = read.span()[i];
     return floats;
 }
 

@@ -67,7 +67,7 @@ py::array view_of(std::span<const float> numbers, const py::object& owner);
 /// @param cells  [m, 3] faces, or [m, 4] tetrahedra, which tell the vertices that count
 py::array vertex_array(const py::object& vertices, const py::array_t<std::uint32_t>& cells);
 /// [n, 3] float32, contiguous; the same array where it is one already.
-py::array_t<float> float_array(const py::object& vertices);
+py::array_t<float> float_array(const py::object& points, const char* name);
 /// [n, 3] uint32, contiguous; the same array where it is one already.
 py::array_t<std::uint32_t> face_array(const py::object& faces);
 /// [n, 4] uint32, contiguous; the same array where it is one already.

@@ -47,7 +47,7 @@ VertexCache cache_of(const py::object& samples, double start_time, double sample
         throw py::value_error(
             "samples must have the shape (samples, vertices, 3), with at least one of each");
     if (!std::isfinite(start_time) || !std::isfinite(sample_seconds) || !(sample_seconds > 0))
-        throw py::value_error("times must be finite, and sample_seconds positive");
+        throw py::value_error("start_time and sample_seconds must be finite, and sample_seconds positive");
     std::vector<Vec3f> copy(points.size());
     const auto vertex_count = static_cast<std::size_t>(points.shape()[1]);
     for (std::size_t i = 0; i < copy.size(); ++i) {
@@ -128,7 +128,7 @@ void bind_colliders(py::module_& module) {
     module.def("rotation_about", [](const Vector& axis, double angle_rad) {
         const Vec3d about = finite_vector_of(axis, "axis");
         if (about == Vec3d{} || !std::isfinite(angle_rad))
-            throw py::value_error("axis must not be zero, and the angle finite");
+            throw py::value_error("axis must not be zero, and angle_rad finite");
         return to_python(Rotation::about(about, angle_rad));
     });
 }

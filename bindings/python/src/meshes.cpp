@@ -167,6 +167,7 @@ py::dict report_dict(const MeshReport& report, const Vec3d& origin) {
 
 void bind_meshes(py::module_& module) {
     module.def("vertex_array", vertex_array);
+    module.def("number_array", number_array);
     module.def("float_array", float_array);
     module.def("face_array", face_array);
     module.def("read_mesh", [](const std::filesystem::path& path) {

@@ -97,8 +97,7 @@ void FromPython::operator()(const char* name, std::vector<Attachment>& member) c
     for (const auto& [vertex, collider] : pairs_of(values_[name], name)) member.push_back({vertex, collider});
 }
 void FromPython::operator()(const char* name, std::vector<Vec3f>& member) const {
-    static_cast<void>(name);
-    member = points_of(float_array(values_[name]));
+    member = points_of(float_array(values_[name], name));
 }
 void FromPython::operator()(RigidTransform& member) const {
     member = pose_of(
