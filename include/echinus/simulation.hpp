@@ -529,8 +529,8 @@ class Simulation {
 
     /// Newton: the force and torque that the deformable exerted on a collider in the last frame by contact
     /// and friction, averaged over the frame. It is 0 before the first frame, and always with Jakobsen. A
-    /// program that applies the load to a rigid body and moves the collider with the body exchanges momentum
-    /// with the deformable (examples/08_load).
+    /// program with its own rigid bodies should rather leave them to the frame by set_collider_free()
+    /// (examples/08_load): to apply the load of the previous frame to them is stable only for small steps.
     /// @pre collider_index < colliders().size()
     Load load_on(std::size_t collider_index) const;
 

@@ -135,6 +135,8 @@ void Solver::set_free(std::size_t collider, double mass) {
     const ExactMap* const map = map_of_surface(colliders[collider]);
     require_option(map != nullptr,
                    name + " has no exact map, which determines its centre of mass and inertia");
+    require_option(map->view().border.empty(),
+                   name + " has an open mesh, so it has no centre of mass; a free collider has to be closed");
     motions.set_free(collider, RigidBody(model_mesh(map->view(), colliders[collider].scale), mass,
                                          colliders[collider], name));
 }

@@ -34,6 +34,14 @@ TriangleMesh moved_by(TriangleMesh mesh, const Vec3f& by) {
     return mesh;
 }
 
+/// A cloth that is held along its border.
+Deformable trampoline() {
+    Deformable sheet = sheet_at(0, 2, 20);
+    for (std::uint32_t i = 0; i < 20; ++i)
+        for (const std::uint32_t pin : {i, 19 * 20 + i, 20 * i, 20 * i + 19}) sheet.inverse_masses[pin] = 0;
+    return sheet;
+}
+
 std::string refusal(const ColliderMap& map, double mass, SimulationOptions options = {}) {
     Simulation simulation(sheet_at(5, 1, 3), {{.map = map}}, options);
     return refusal_of(ErrorCode::InvalidOptions, [&] { simulation.set_collider_free(0, mass); });
@@ -236,14 +244,10 @@ TEST(FreeCollider, RestsOnClothOfWhichOnlyTheParticlesCollide) {
 }
 
 TEST(FreeCollider, ComesToRestInAClothThatBearsIt) {
-    Deformable trampoline = sheet_at(0, 2, 20);
-    for (std::uint32_t i = 0; i < 20; ++i)
-        for (const std::uint32_t pin : {i, 19 * 20 + i, 20 * i, 20 * i + 19})
-            trampoline.inverse_masses[pin] = 0;
     const TriangleMesh ball = make_sphere(0.3, 40, 20);
     SimulationOptions options = beside_free_models();
     options.newton().air_drag = 2;
-    Simulation simulation(trampoline, {{.map = ExactMap::build(ball), .pose = {{}, {0, 0, 0.5}}}}, options);
+    Simulation simulation(trampoline(), {{.map = ExactMap::build(ball), .pose = {{}, {0, 0, 0.5}}}}, options);
     simulation.set_collider_free(0, 0.3);
     double force = 0;
     for (int i = 0; i < 420; ++i) {
@@ -252,6 +256,25 @@ TEST(FreeCollider, ComesToRestInAClothThatBearsIt) {
         if (i >= 360) force += simulation.load_on(0).force.z / 60;
     }
     EXPECT_NEAR(force, 0.3 * 9.81, 0.05 * 0.3 * 9.81);
+    EXPECT_LT(simulation.colliders()[0].pose.translation.z, 0.3);
+}
+
+TEST(FreeCollider, ComesToRestWhereAHostHandsItsVelocitiesOverInEachFrame) {
+    // From this height a ball bounced ever higher where the host moved it by the load of the frame before.
+    Simulation simulation(trampoline(),
+                          {{.map = ExactMap::build(make_sphere(0.3, 40, 20)), .pose = {{}, {0, 0, 0.85}}}},
+                          beside_free_models());
+    Vec3d velocity, angular_velocity;
+    double force = 0;
+    for (int i = 0; i < 300; ++i) {
+        simulation.set_collider_velocity(0, velocity, angular_velocity);
+        simulation.set_collider_free(0, 0.3);
+        simulation.step();
+        velocity = simulation.colliders()[0].linear_velocity;
+        angular_velocity = simulation.colliders()[0].angular_velocity;
+        if (i >= 240) force += simulation.load_on(0).force.z / 60;
+    }
+    EXPECT_NEAR(force, 0.3 * 9.81, 0.02 * 0.3 * 9.81);
     EXPECT_LT(simulation.colliders()[0].pose.translation.z, 0.3);
 }
 

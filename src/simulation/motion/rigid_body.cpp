@@ -49,8 +49,7 @@ RigidBody::RigidBody(const TriangleMesh& surface, double mass, const Collider& c
     for (const Triangle& face : surface.faces)
         solid.add(Vec3d(surface.vertices[face[0]]) - origin, Vec3d(surface.vertices[face[1]]) - origin,
                   Vec3d(surface.vertices[face[2]]) - origin);
-    require_option(inspect(surface).closed && solid.volume != 0,
-                   name + " encloses nothing, so it has no centre of mass; a free collider has to be closed");
+    require_option(solid.volume != 0, name + " encloses nothing, so it has no centre of mass");
     const Vec3d centre = solid.moment * (1 / solid.volume);
     solid.add_outer(centre, -solid.volume);
     const double density = mass / solid.volume; // negative where faces look inwards, as the integrals are
