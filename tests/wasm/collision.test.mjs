@@ -109,6 +109,17 @@ describe('A collision', () => {
         assert.equal(pairsAfterFall({}), 0);
         assert.equal(pairsAfterFall({ selfCollision: false }), 1);
     });
+    test('of surfaces keeps layers as far apart as selfThickness says, by default as the thickness', () => {
+        const faces = [0, 1, 2, 3, 4, 5];
+        const layer = (height) => [-1, -1, height, 1, -1, height, 0, 1, height];
+        const gapAfter = (options) => {
+            const collision = echinus.makeCollision({ positions: [...layer(5), ...layer(5.1)], faces, colliders: [{ map }], thickness: 0.05, surfaces: true, ...options });
+            for (let step = 0; step < 20; ++step) collision.correct(SECONDS);
+            return collision.positions[11] - collision.positions[2];
+        };
+        assert.ok(Math.abs(gapAfter({}) - 0.1) < 1e-3, `${gapAfter({})}`);
+        assert.ok(gapAfter({ selfThickness: 0.3 }) > 0.2, `${gapAfter({ selfThickness: 0.3 })}`);
+    });
     test('refuses what it cannot work with, in a sentence', () => {
         const good = { positions: [3, 0, 0], colliders: [{ map }], thickness: 0.01 };
         const refusal = (options) => errorOf(() => echinus.makeCollision({ ...good, ...options }));
@@ -123,11 +134,15 @@ describe('A collision', () => {
         assert.match(refusal({ positions: [] }).message, /no particles/);
         assert.match(refusal({ faces: [0, 1, 2], surfaces: true }).message, /refers to particle 1/);
         assert.match(refusal({ selfCollision: true }).message, /needs surfaces/);
+        assert.match(refusal({ selfThickness: 0.1 }).message, /selfThickness needs surfaces/);
+        assert.match(refusal({ selfThickness: -1 }).message, /selfThickness is -1/);
+        assert.match(refusal({ selfThickness: 1e10, surfaces: true, faces: [0, 0, 0] }).message, /selfThickness/);
+        assert.match(refusal({ friction: 1e10 }).message, /friction/);
         assert.match(refusal({ surfaces: true }).message, /give the faces/);
         const collision = echinus.makeCollision(good);
         assert.match(errorOf(() => collision.correct(0)).message, /0 seconds/);
         assert.equal(errorOf(() => collision.correct(1n)).code, 'InvalidArgument');
-        assert.match(errorOf(() => collision.setColliderPose(1, [0, 0, 0])).message, /no collider 1; there are 1/);
+        assert.match(errorOf(() => collision.setColliderPose(1, [0, 0, 0])).message, /no collider 1; there is 1/);
         collision.delete();
         assert.equal(errorOf(() => collision.correct(SECONDS)).code, 'Deleted');
     });

@@ -2,7 +2,7 @@ import { Handle } from './core.mjs';
 import { EchinusError, refuse, requireCount, requireFinite, withDefaults } from './errors.mjs';
 import { requireMap } from './maps.mjs';
 import { asIndices, asVertices } from './mesh.mjs';
-import { collider, deformableArrays, pose } from './structs.mjs';
+import { collider, deformableArrays, particleCollisionOptions, pose, surfaceCollisionOptions } from './structs.mjs';
 
 const NO_TURN = [1, 0, 0, 0];
 
@@ -62,16 +62,21 @@ export class Collision extends Handle {
     }
 }
 
-const DEFAULTS = { positions: undefined, faces: [], colliders: undefined, thickness: undefined, friction: 0.5, surfaces: false, selfCollision: undefined, allowOpenColliders: false, untangle: false };
+/** Those from friction on are members of the library's structs, whose defaults bindings/options.toml has. */
+const DEFAULTS = {
+    positions: undefined, faces: [], colliders: undefined, thickness: undefined, surfaces: false,
+    friction: undefined, selfThickness: undefined, selfCollision: undefined, allowOpenColliders: undefined, untangle: undefined,
+};
+const OF_SURFACES = ['selfThickness', 'selfCollision', 'untangle'];
 const COLLIDER_DEFAULTS = { map: undefined, position: [0, 0, 0], rotation: NO_TURN, scale: 1 };
 
 /** The options with all their defaults, checked as far as C++ does not. */
 function complete(options) {
     const all = withDefaults(options, DEFAULTS, 'an option of a collision');
-    if (all.selfCollision === undefined) all.selfCollision = all.surfaces;
     if (!Array.isArray(all.colliders) || all.colliders.length === 0) refuse('colliders must be an array of at least one collider');
-    for (const name of ['thickness', 'friction']) if (!(Number.isFinite(all[name]) && all[name] >= 0)) refuse(`${name} is ${String(all[name])}; it must be a number, not negative`);
-    for (const name of ['surfaces', 'selfCollision', 'allowOpenColliders', 'untangle']) if (typeof all[name] !== 'boolean') refuse(`${name} must be true or false`);
+    const isGiven = (name) => all[name] !== undefined;
+    for (const name of ['thickness', ...['friction', 'selfThickness'].filter(isGiven)]) if (!(Number.isFinite(all[name]) && all[name] >= 0)) refuse(`${name} is ${String(all[name])}; it must be a number, not negative`);
+    for (const name of ['surfaces', 'selfCollision', 'allowOpenColliders', 'untangle'].filter(isGiven)) if (typeof all[name] !== 'boolean') refuse(`${name} must be true or false`);
     const colliders = all.colliders.map((given) => {
         const placed = withDefaults(given, COLLIDER_DEFAULTS, 'a key of a collider');
         const scale = typeof placed.scale === 'number' ? Array(3).fill(placed.scale) : placed.scale;
@@ -85,13 +90,13 @@ function complete(options) {
         };
     });
     const faces = asIndices(all.faces, 'faces', 3);
-    for (const name of ['selfCollision', 'untangle']) if (all[name] && !all.surfaces) refuse(`${name} needs surfaces: set both`);
+    for (const name of OF_SURFACES) if (all[name] && !all.surfaces) refuse(`${name} needs surfaces: set both`);
     if (all.surfaces && faces.length === 0) refuse('surfaces collide where there are faces: give the faces of the deformable, three particles each');
     return { ...all, positions: asVertices(all.positions), faces, colliders };
 }
 
-/** The library's names of options, and those that they have here. */
-const OWN_NAMES = { allow_open_colliders: 'allowOpenColliders' };
+/** The library's name of an option, such as self_thickness, as it is here. */
+const ownName = (word) => word.replace(/_(\w)/g, (_, letter) => letter.toUpperCase());
 
 /** Calls `make`, whose errors name options. */
 function inOwnWords(make) {
@@ -99,7 +104,7 @@ function inOwnWords(make) {
         return make();
     } catch (error) {
         if (!(error instanceof EchinusError)) throw error;
-        throw new EchinusError(error.code, error.message.replace(/\w+/g, (word) => OWN_NAMES[word] ?? word));
+        throw new EchinusError(error.code, error.message.replace(/\w+/g, (word) => (ownName(word) in DEFAULTS ? ownName(word) : word)));
     }
 }
 
@@ -108,7 +113,11 @@ function requireRotation(rotation) {
     return rotation;
 }
 
-function make(core, { positions, faces, colliders, thickness, friction, surfaces, selfCollision, allowOpenColliders, untangle }) {
+/** Of all options those that were given and are members of a struct. */
+const givenOf = (struct, all) => Object.fromEntries(Object.keys(struct.members).filter((name) => all[name] !== undefined).map((name) => [name, all[name]]));
+
+function make(core, all) {
+    const { positions, faces, colliders, thickness, surfaces } = all;
     if (positions.length === 0) refuse('there are no particles');
     const counts = { particleCount: positions.length / 3, faceCount: faces.length / 3 };
     const maps = colliders.map(({ map }) => requireMap(core, map));
@@ -120,10 +129,10 @@ function make(core, { positions, faces, colliders, thickness, friction, surfaces
                 core.call('echinus_collider_init', row + collider.bytes * i, collider.bytes, maps[i]);
                 core.write(collider, row + collider.bytes * i, { pose, scale });
             });
-            const common = [deformable, row, colliders.length, thickness, friction];
-            return surfaces
-                ? core.make('wasm_collision_make_surfaces', ...common, selfCollision, untangle)
-                : core.make('wasm_collision_make', ...common, allowOpenColliders);
+            const [maker, init, struct] = surfaces
+                ? ['wasm_collision_make_surfaces', 'echinus_surface_collision_options_init', surfaceCollisionOptions]
+                : ['wasm_collision_make', 'echinus_particle_collision_options_init', particleCollisionOptions];
+            return core.withOptions(init, struct, givenOf(struct, all), (options) => core.make(maker, deformable, row, colliders.length, thickness, options));
         });
     } finally {
         core.call('echinus_deformable_destroy', deformable);

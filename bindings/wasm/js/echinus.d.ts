@@ -514,18 +514,28 @@ export interface CollisionOptions {
     colliders: readonly PlacedMap[];
     /** The distance that particles keep from the models, units. */
     thickness: number;
-    /** Coulomb's coefficient. Default: 0.5. */
-    friction?: number;
     /** [3 face_count] particles of each face, which `surfaces` needs. */
     faces?: ArrayLike<number>;
     /** Keep faces off models, not only particles (docs/surfaces.md). Needs exact maps. Default: false. */
     surfaces?: boolean;
-    /** Keep faces off each other, too, which needs `surfaces`. Default: as `surfaces`. */
-    selfCollision?: boolean;
-    /** Accept the exact map of an open mesh, near whose holes particles get in and out. Default: false. */
+    // Options of collisions. By bindings/generate_options from bindings/options.toml: edit that.
+    /** Coulomb's coefficient; 0 is no friction (0 to 1e9). Default: 0.5. */
+    friction?: number;
+    /** Accept exact maps of open meshes, for which nothing is guaranteed. Default: false. */
     allowOpenColliders?: boolean;
-    /** With `surfaces`: separate faces that intersect at the start, if possible, instead of refusing them. Default: false. */
+    /**
+     * With `surfaces`: distance that layers keep from each other; less near small faces. By default the thickness (0 to
+     * 1e9).
+     */
+    selfThickness?: number;
+    /** With `surfaces`: faces do not intersect each other either. Default: true. */
+    selfCollision?: boolean;
+    /**
+     * With `surfaces`: separate an initial state that intersects, or is inside the model, instead of rejecting it.
+     * Default: false.
+     */
     untangle?: boolean;
+    // End of options.
 }
 
 /**

@@ -75,6 +75,13 @@ export const contactPoint = { bytes: 112, members: {
     position: [0, 'Float64', 3], normal: [24, 'Float64', 3], gap: [48, 'Float64'], normalImpulse: [56, 'Float64'],
     frictionImpulse: [64, 'Float64', 3], collider: [88, 'Uint32'], particles: [92, 'Uint32', 4],
 } };
+export const particleCollisionOptions = { bytes: 24, members: {
+    size: [0, 'Uint32'], friction: [8, 'Float64'], allowOpenColliders: [16, 'Int32'], threadCount: [20, 'Uint32'],
+} };
+export const surfaceCollisionOptions = { bytes: 40, members: {
+    size: [0, 'Uint32'], friction: [8, 'Float64'], selfThickness: [16, 'Float64'], selfCollision: [24, 'Int32'],
+    untangle: [28, 'Int32'], threadCount: [32, 'Uint32'],
+} };
 
 /** Of choices, in the order of their numbers. */
 export const words = {

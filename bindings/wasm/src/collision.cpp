@@ -2,6 +2,7 @@
 // JavaScript reads and writes.
 
 #include "interface.hpp"
+#include "options.hpp"
 
 #include <echinus/particle_collision.hpp>
 #include <echinus/surface_collision.hpp>
@@ -53,23 +54,22 @@ void correct(Collision& collision, double seconds) {
 
 ECHINUS_EXPORT(wasm_collision_make)
 echinus_status wasm_collision_make(const echinus_deformable* deformable, const echinus_collider* row,
-                                   std::size_t count, double thickness, double friction, bool allow_open,
-                                   Collision** collision) {
+                                   std::size_t count, double thickness,
+                                   const echinus_particle_collision_options* options, Collision** collision) {
     return make(__func__, collision, [&] {
-        return Collision(ParticleCollision(colliders_from(row, count), thickness,
-                                           {.friction = friction, .allow_open_colliders = allow_open}),
+        return Collision(ParticleCollision(colliders_from(row, count), thickness, options_from(options)),
                          deformable->value.positions);
     });
 }
 ECHINUS_EXPORT(wasm_collision_make_surfaces)
 echinus_status wasm_collision_make_surfaces(const echinus_deformable* deformable, const echinus_collider* row,
-                                            std::size_t count, double thickness, double friction,
-                                            bool self_collision, bool untangle, Collision** collision) {
+                                            std::size_t count, double thickness,
+                                            const echinus_surface_collision_options* options,
+                                            Collision** collision) {
     return make(__func__, collision, [&] {
         const Deformable& given = deformable->value;
-        SurfaceCollision surfaces(
-            given.positions, given.faces, colliders_from(row, count), thickness,
-            {.friction = friction, .self_collision = self_collision, .untangle = untangle});
+        SurfaceCollision surfaces(given.positions, given.faces, colliders_from(row, count), thickness,
+                                  options_from(options));
         std::vector<Vec3f> start = surfaces.positions();
         return Collision(std::move(surfaces), std::move(start));
     });

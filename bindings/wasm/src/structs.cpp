@@ -124,3 +124,16 @@ static_assert(sizeof(echinus_contact_point) == 112 && offsetof(echinus_contact_p
               offsetof(echinus_contact_point, friction_impulse) == 64 &&
               offsetof(echinus_contact_point, collider) == 88 &&
               offsetof(echinus_contact_point, particles) == 92);
+static_assert(sizeof(echinus_particle_collision_options) == 24 &&
+              offsetof(echinus_particle_collision_options, size) == 0 &&
+              offsetof(echinus_particle_collision_options, friction) == 8 &&
+              offsetof(echinus_particle_collision_options, allow_open_colliders) == 16 &&
+              offsetof(echinus_particle_collision_options, thread_count) == 20);
+static_assert(sizeof(echinus_surface_collision_options) == 40 &&
+              offsetof(echinus_surface_collision_options, size) == 0 &&
+              offsetof(echinus_surface_collision_options, friction) == 8 &&
+              offsetof(echinus_surface_collision_options, self_thickness) == 16 &&
+              offsetof(echinus_surface_collision_options, self_collision) == 24 &&
+              offsetof(echinus_surface_collision_options, untangle) == 28 &&
+              offsetof(echinus_surface_collision_options, thread_count) == 32 &&
+              offsetof(echinus_surface_collision_options, reserved) == 36);
