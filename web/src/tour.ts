@@ -85,13 +85,17 @@ export class Tour {
     readonly #wishes: TourWishes;
     #stop = -1;
     #timer = 0;
+    /** When the stop began, and how much of it had passed when the visitor paused it. */
     #since = 0;
+    #passed = 0;
+    #paused = false;
     /** The visitor's choice before the tour. */
     #before: Settings['map'] = 'exact';
 
     constructor(wishes: TourWishes) {
         this.#wishes = wishes;
         byId('tour-back').addEventListener('click', () => this.#goTo(this.#stop - 1));
+        byId('tour-pause').addEventListener('click', () => this.#pause(!this.#paused));
         byId('tour-next').addEventListener('click', () => this.next());
         byId('tour-end').addEventListener('click', () => this.end());
     }
@@ -104,6 +108,7 @@ export class Tour {
         if (!this.#wishes.model()) return;
         if (!this.runs) {
             this.#before = this.#wishes.settings().map;
+            this.#pause(false);
             this.#wishes.enter();
         }
         scrollTo({ top: 0 }); // on a small screen its button is far below the picture
@@ -144,12 +149,28 @@ export class Tour {
         byId('tour').dataset.stop = String(number); // the tests read this
         byId('tour-place').textContent = `${number + 1} of ${STOPS.length}`;
         byId('tour-back').hidden = number === 0;
+        byId('tour-pause').hidden = isLast || prefersStillness();
         byId('tour-next').textContent = isLast ? 'Done' : 'Next';
         byId('tour-end').hidden = isLast;
         stop.enter?.(this.#wishes);
-        this.#since = performance.now();
-        if (prefersStillness()) stop.move?.(this.#wishes, 1);
-        else if (!isLast) this.#timer = window.setInterval(() => this.#move(stop), STEP_MS);
+        this.#passed = 0;
+        if (prefersStillness() || this.#paused) stop.move?.(this.#wishes, 1);
+        else if (!isLast) this.#run();
+    }
+
+    /** A stop that the visitor has paused waits, and so do those that follow, until the visitor resumes. */
+    #pause(paused: boolean): void {
+        this.#paused = paused;
+        byId('tour-pause').textContent = paused ? 'Resume' : 'Pause';
+        if (!this.runs) return;
+        clearInterval(this.#timer);
+        if (paused) this.#passed = performance.now() - this.#since;
+        else this.#run();
+    }
+
+    #run(): void {
+        this.#since = performance.now() - this.#passed;
+        this.#timer = window.setInterval(() => this.#move(STOPS[this.#stop]), STEP_MS);
     }
 
     #move(stop: Stop): void {

@@ -200,6 +200,27 @@ test('the tour goes through the exact map by itself or by a key, and ends at the
     await browser.close(page);
 });
 
+test('a visitor pauses the tour, turns its pages meanwhile, and lets it go on', async () => {
+    const page = await browser.open('#model=torus&particles=400', SMALL);
+    await untilFrame(page, 1);
+    await page.locator('#tour-begin').click();
+    const stop = () => page.locator('#tour').getAttribute('data-stop');
+    await page.locator('#tour-pause').click();
+    await page.waitForTimeout(8000); // longer than a stop lasts
+    assert.equal(await stop(), '0');
+    await page.locator('#tour-next').click();
+    assert.equal(await page.locator('#tour-pause').textContent(), 'Resume');
+    await page.waitForTimeout(8000);
+    assert.equal(await stop(), '1');
+    await page.locator('#tour-pause').click();
+    await page.waitForFunction(() => document.getElementById('tour').dataset.stop === '2');
+    await page.keyboard.press('Escape');
+    await page.keyboard.press('t');
+    assert.equal(await page.locator('#tour-pause').textContent(), 'Pause');
+    await page.waitForFunction(() => document.getElementById('tour').dataset.stop === '1');
+    await browser.close(page);
+});
+
 test('the last stop of the tour waits while the visitor pulls the cloth', async () => {
     const page = await browser.open('#model=torus&particles=400', SMALL);
     await untilFrame(page, 5);
