@@ -277,6 +277,7 @@ class App {
         this.#model = model;
         this.#main.model = model;
         this.#modelView.show(model);
+        byId('poster').hidden = true;
         this.#inspector.model = model;
         this.#pointCamera(model);
         this.#showTitle(model);

@@ -21,6 +21,7 @@ const sayWhatIsMissing = (features: string[]) =>
 
 async function begin(): Promise<void> {
     byId('subtitle').textContent = 'Loading';
+    byId('poster').hidden = location.hash.length > 1; // another example
     const missing = missingFeatures();
     if (missing.length > 0) return sayWhatIsMissing(missing);
     const client = new Client(); // loads the module while three.js is loading

@@ -22,6 +22,24 @@ test('the page opens with the cloth already falling and an empty console', async
     await browser.close(page);
 });
 
+test('a picture of the opening example stands in until its model is there, and for no other example', async () => {
+    const beforeLoad = () => (globalThis.Worker = class { postMessage() {} addEventListener() {} terminate() {} });
+    const shows = async (link) => {
+        const page = await browser.open(link, { ...TINY, beforeLoad });
+        const poster = page.locator('#poster');
+        await page.waitForFunction(() => document.getElementById('subtitle').textContent === 'Loading' && document.getElementById('poster').complete);
+        const is = await poster.evaluate((picture) => !picture.hidden && picture.naturalWidth > 0);
+        await browser.close(page);
+        return is;
+    };
+    assert.ok(await shows(''));
+    assert.ok(!(await shows('#model=flag')));
+    const page = await browser.open('', TINY);
+    await untilFrame(page, 1);
+    assert.ok(!(await page.locator('#poster').isVisible()));
+    await browser.close(page);
+});
+
 test('a page that carries the horse carries the notice and the text of its licence', { skip: !hasHorse && 'the horse is not installed' }, async () => {
     const page = await browser.open('#particles=100', SMALL);
     await untilFrame(page, 1);
