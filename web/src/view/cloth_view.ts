@@ -37,8 +37,7 @@ export class ClothView {
         for (const part of this.#parts) part.frustumCulled = false; // it moves: its bounding sphere would be wrong a frame later
         for (const part of [this.mesh, this.#edge.mesh]) part.castShadow = part.receiveShadow = true;
         this.#back.receiveShadow = true;
-        this.#wrong.visible = false;
-        this.#back.visible = this.#edge.mesh.visible = false;
+        this.#wrong.visible = this.#edge.mesh.visible = false;
     }
 
     get #parts() {
@@ -133,11 +132,12 @@ export class ClothView {
 
     #refine(): void {
         const { soft, thickness = 0, weave } = this.#cloth;
-        const twoSided = this.#fine && !soft && thickness > 0;
-        this.#lift.value = twoSided ? THICK * thickness : 0;
+        const isThick = this.#fine && !soft && thickness > 0;
+        this.#lift.value = isThick ? THICK * thickness : 0;
         this.#drop.value = -this.#lift.value;
-        this.#back.visible = this.#edge.mesh.visible = twoSided;
-        this.#front.side = twoSided ? THREE.FrontSide : THREE.DoubleSide;
+        this.#edge.mesh.visible = isThick;
+        this.#back.visible = !soft;
+        this.#front.side = soft ? THREE.DoubleSide : THREE.FrontSide;
         if (this.#fine && weave) this.#weave ??= weaveTexture();
         for (const material of [this.#front, this.#behind]) {
             material.bumpMap = this.#fine && weave ? this.#weave! : null;
@@ -165,10 +165,13 @@ export class ClothView {
     }
 }
 
-/** The side that faces away, drawn as the front of its own. */
+/**
+ * The side that faces away, drawn as the front of its own. It is drawn a little farther away than it is: beyond the edge of a fold, where both
+ * sides meet, it would otherwise show through the front as a row of dark dots.
+ */
 function backSide(uniforms: FabricUniforms, drop: { value: number }): THREE.MeshLambertMaterial {
     const material = fabric(CLOTH_BACK, CLOTH_BACK, uniforms, drop);
-    material.side = THREE.BackSide;
+    Object.assign(material, { side: THREE.BackSide, polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1 });
     return material;
 }
 
