@@ -228,14 +228,21 @@ double NewtonSolver::most_carried() {
                            threshold::kTouch * thickness_);
     if (field.is_zero()) return 0;
     start_ = now_;
-    field.carry(start_, std::span(is_held_).first(motion_.particle_count()), workers_);
+    const ScratchVector<Vec3d> own = own_displacements(options.time_step);
+    field.carry(start_, std::span(is_held_).first(own.size()), own, workers_);
     double most = 0;
-    for (std::size_t i = 0; i < motion_.particle_count(); ++i) {
+    for (std::size_t i = 0; i < own.size(); ++i) {
         const Vec3d displacement = Vec3d(start_[i]) - Vec3d(now_[i]);
-        const Vec3d beyond = displacement - motion_.velocities[i] * options.time_step;
-        most = std::max(most, std::min(length(displacement), length(beyond)));
+        most = std::max(most, std::min(length(displacement), length(displacement - own[i])));
     }
     return most;
+}
+
+/// By the velocities that particles have.
+ScratchVector<Vec3d> NewtonSolver::own_displacements(double seconds) const {
+    ScratchVector<Vec3d> own(motion_.velocities.begin(), motion_.velocities.end(), workers_.scratch());
+    for (Vec3d& displacement : own) displacement *= seconds;
+    return own;
 }
 
 /// Vertices of a collider that deforms do not go back.
@@ -327,7 +334,8 @@ bool NewtonSolver::find_start(const FramePart& part, bool is_least) {
     const CarryField field(colliders_before_, colliders, is_near_, deformations_, part,
                            threshold::kTouch * thickness_);
     if (field.is_zero() && !is_any_led) return true;
-    field.carry(start_, std::span(is_held_).first(motion_.particle_count()), workers_);
+    field.carry(start_, std::span(is_held_).first(motion_.particle_count()),
+                own_displacements(options.time_step * double{part.end - part.begin}), workers_);
     return contacts_->carry(colliders_before_, colliders, deformations_, part, now_, start_, is_held_,
                             is_least, workers_);
 }

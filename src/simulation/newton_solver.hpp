@@ -42,6 +42,7 @@ class NewtonSolver : public Solver {
     std::uint32_t part_count();
     void find_near_colliders();
     double most_carried();
+    ScratchVector<Vec3d> own_displacements(double seconds) const;
     bool step_part(const FramePart& part);
     void find_now();
     double fastest() const;

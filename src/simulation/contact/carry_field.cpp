@@ -45,6 +45,24 @@ Vec3f displacement_at(const SurfaceMotion& motion, const Triangle& face, const V
     return sum;
 }
 
+/// The unit vector from the nearest point of a surface to a particle.
+Vec3d direction_from(const Contact& contact, const Vec3f& particle) {
+    const Vec3d between = Vec3d(particle) - Vec3d(contact.point);
+    const double distance = length(between);
+    return distance > 0 ? between * (1 / distance) : Vec3d(contact.normal);
+}
+
+/// The part of a displacement that carries a particle: all that would close the gap, and of the rest as much
+/// as the particle goes by itself. So nothing is dragged along by what only passes.
+/// @param away  the direction from the surface to the particle
+/// @param own   the displacement that the particle has without it
+Vec3d taken(const Vec3d& displacement, const Vec3d& away, const Vec3d& own) {
+    const Vec3d closing = away * std::max(dot(away, displacement), 0.0);
+    const Vec3d rest = displacement - closing;
+    const double rest_sq = dot(rest, rest);
+    return rest_sq > 0 ? closing + rest * std::clamp(dot(own, rest) / rest_sq, 0.0, 1.0) : closing;
+}
+
 } // namespace
 
 Deformation::Deformation(const Collider& before, const DeformingCollider& surface, const PointArrays& points,
@@ -72,7 +90,8 @@ Deformation::Deformation(const Collider& before, const DeformingCollider& surfac
         if (!contacts[i].found() || contacts[i].face == kNoIndex) continue;
         const Triangle& face = surface.faces()[contacts[i].face];
         near.push_back({i, std::fabs(contacts[i].depth),
-                        displacement_at(*motion, face, body.point_to_local(contacts[i].point))});
+                        displacement_at(*motion, face, body.point_to_local(contacts[i].point)),
+                        direction_from(contacts[i], places[i])});
     }
 }
 
@@ -128,22 +147,24 @@ struct CarryField::Blend {
     }
 };
 
-void CarryField::add_rigid(std::size_t collider, const Vec3f& point, Blend& blend) const {
+void CarryField::add_rigid(std::size_t collider, const Vec3f& point, const Vec3d& own, Blend& blend) const {
     if (map_of_surface(before_[collider]) == nullptr) return;
     const Contact found = contact(before_[collider], point, static_cast<float>(reach_));
     if (!found.found()) return;
     const RigidTransform &before = before_[collider].pose, &after = after_[collider].pose;
-    blend.add(after.to_world(before.to_local(Vec3d(point))) - Vec3d(point), std::fabs(found.depth));
+    const Vec3d displacement = after.to_world(before.to_local(Vec3d(point))) - Vec3d(point);
+    blend.add(taken(displacement, direction_from(found, point), own), std::fabs(found.depth));
 }
 
-void CarryField::add_deforming(std::size_t collider, const PointArrays& points,
+void CarryField::add_deforming(std::size_t collider, const PointArrays& points, Places own,
                                std::span<Blend> blends) const {
     const RigidTransform &before = before_[collider].pose, &after = after_[collider].pose;
     const double share{part_.end - part_.begin};
     for (const Deformation::Near& near : deformations_[collider].near) {
         const Vec3d point(points[near.particle]);
         const Vec3d to = before.to_local(point) + Vec3d(near.displacement) * share;
-        blends[near.particle].add(after.to_world(to) - point, near.distance);
+        blends[near.particle].add(taken(after.to_world(to) - point, near.away, own[near.particle]),
+                                  near.distance);
     }
 }
 
@@ -153,16 +174,17 @@ Vec3d CarryField::displacement_of(const Blend& blend) const {
     return blend.sum * (fading / blend.weights);
 }
 
-void CarryField::carry(PointArrays& points, std::span<const std::uint8_t> is_held,
+void CarryField::carry(PointArrays& points, std::span<const std::uint8_t> is_held, Places own,
                        const Workers& workers) const {
     if (!moves_) return;
     ScratchVector<Blend> blends(is_held.size(), workers.scratch());
     for (std::size_t c = 0; c < before_.size(); ++c)
-        if (deformations_[c].motion != nullptr) add_deforming(c, points, blends);
+        if (deformations_[c].motion != nullptr) add_deforming(c, points, own, blends);
     const auto carry_point = [&](std::size_t i) {
         if (is_held[i] != 0) return;
         for (std::size_t c = 0; c < before_.size(); ++c)
-            if (is_near_[c] != 0 && deformations_[c].motion == nullptr) add_rigid(c, points[i], blends[i]);
+            if (is_near_[c] != 0 && deformations_[c].motion == nullptr)
+                add_rigid(c, points[i], own[i], blends[i]);
         points.set(i, Vec3f(Vec3d(points[i]) + displacement_of(blends[i])));
     };
     workers.for_ranges(is_held.size(), kPointsPerPiece,

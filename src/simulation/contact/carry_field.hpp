@@ -1,6 +1,7 @@
 #pragma once
 
 #include "geometry/workers.hpp"
+#include "mechanics/energy_term.hpp"
 #include "simulation/deforming_collider.hpp"
 #include "simulation/particles.hpp"
 
@@ -19,6 +20,7 @@ struct Deformation {
         std::uint32_t particle;
         float distance;
         Vec3f displacement; ///< of the nearest point of the surface in the frame, in the body frame
+        Vec3d away;         ///< unit vector from that point to the particle
     };
 
     Deformation() = default;
@@ -39,9 +41,10 @@ struct FramePart {
     float begin = 0, end = 1;
 };
 
-/// How colliders that move in a step carry what is near them along: the displacements of their material,
-/// blended by the inverse of the distance (Shepard 1968), and fading with it. What lies on a collider keeps
-/// its gap as if it were glued to it, so that a step begins in a state that is safe where the colliders end.
+/// How colliders that move in a step carry what is near them along: of the displacements of their material
+/// all that would close a gap, and of the rest as much as a particle goes by itself, blended by the inverse
+/// of the distance (Shepard 1968), and fading with it. What lies on a collider and moves with it keeps its
+/// gap, so that a step begins in a state that is safe where the colliders end.
 class CarryField {
   public:
     /// @param before, after  the colliders when a step begins and when it ends
@@ -62,13 +65,16 @@ class CarryField {
                           std::size_t point_count, double room, double touch);
 
     /// Moves points, but those that are held.
-    void carry(PointArrays& points, std::span<const std::uint8_t> is_held, const Workers& workers) const;
+    /// @param own  [point] its displacement without the colliders
+    void carry(PointArrays& points, std::span<const std::uint8_t> is_held, Places own,
+               const Workers& workers) const;
 
   private:
     /// Of the displacements beside a point, with their weights.
     struct Blend;
-    void add_rigid(std::size_t collider, const Vec3f& point, Blend& blend) const;
-    void add_deforming(std::size_t collider, const PointArrays& points, std::span<Blend> blends) const;
+    void add_rigid(std::size_t collider, const Vec3f& point, const Vec3d& own, Blend& blend) const;
+    void add_deforming(std::size_t collider, const PointArrays& points, Places own,
+                       std::span<Blend> blends) const;
     Vec3d displacement_of(const Blend& blend) const;
 
     const std::vector<Collider>& before_;
