@@ -32,7 +32,7 @@ struct ExactMapOptions {
 
     /// Each octant of directions is divided into divisions^2 cells. More cells give shorter bands and lists
     /// and faster answers near the surface, but take more bytes. 0 without a budget means 0.8 cells per face,
-    /// or fewer if that is needed to keep ExactMapView::byte_count() within 512 bytes per face plus 64 KB,
+    /// or fewer if that is needed to keep ExactMapView::byte_count() within 512 bytes per face plus 64 KiB,
     /// plus 12 bytes for each vertex beyond three per face. Most meshes take 50 bytes per face; only long
     /// faces that lie close together, such as the teeth of a comb, reach the limit. ExactMapStatistics
     /// estimates the cost of queries.
