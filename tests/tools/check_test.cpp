@@ -69,10 +69,16 @@ TEST_F(CheckCommand, PrintsATableForEachAndASentenceWhereNothingIntersects) {
     const std::string text = expect_success({"check", "dress.obj", "body.obj", "hat.obj"});
     EXPECT_NE(text.find("dress.obj and body.obj\n"), std::string::npos) << text;
     EXPECT_NE(text.find("body.obj and itself\n"), std::string::npos) << text;
-    EXPECT_NE(text.find("not known, since the mesh is not closed"), std::string::npos) << text;
+    EXPECT_NE(text.find("not known: the mesh is not closed"), std::string::npos) << text;
     EXPECT_EQ(text.find("hat.obj"), std::string::npos) << text;
     EXPECT_EQ(expect_success({"check", "hat.obj"}), "No faces intersect: 1 mesh.\n");
     EXPECT_EQ(json::parse(expect_success({"check", "hat.obj", "--json"}))["intersecting"], false);
+}
+
+TEST_F(CheckCommand, CallsNoClosedMeshOpenThatNoMapCanHold) {
+    write("tiny.obj", obj_text(make_box({1e-17F, 1e-17F, 1e-17F})));
+    const std::string text = expect_success({"check", "tiny.obj", "tiny.obj"});
+    EXPECT_NE(text.find("or no exact map can hold it"), std::string::npos) << text;
 }
 
 TEST_F(CheckCommand, WritesTheMeshesWithCurvesAsAPlyThatCanBeRead) {

@@ -122,7 +122,7 @@ std::string counted(std::size_t count, const char* one, const char* several) {
 }
 
 std::string depth_text(const Penetration& penetration, const std::string& name) {
-    if (!penetration.known) return "not known, since the mesh is not closed";
+    if (!penetration.known) return "not known: the mesh is not closed, or no exact map can hold it";
     if (penetration.vertex_count == 0) return "no vertex of " + name;
     return fmt::format("{} of {}, at most {:.6g} deep (vertex {})",
                        counted(penetration.vertex_count, "vertex", "vertices"), name, penetration.depth,

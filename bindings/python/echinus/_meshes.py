@@ -415,7 +415,7 @@ class CheckedMeshes:
     found
         Their intersections. It has no pairs where one mesh is wholly inside the other.
     a_in_b, b_in_a
-        ``None`` where the other mesh is not closed, and for a mesh and itself.
+        ``None`` where the other mesh is not closed or no exact map can hold it, and for a mesh and itself.
     """
 
     a: int

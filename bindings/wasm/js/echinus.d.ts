@@ -241,7 +241,7 @@ export interface CheckedMeshes {
     pairCount: number;
     curveCount: number;
     curveLength: number;
-    /** null where the other mesh is not closed, and for a mesh and itself. */
+    /** null where the other mesh is not closed or no exact map can hold it, and for a mesh and itself. */
     aInB: Penetration | null;
     bInA: Penetration | null;
 }

@@ -324,7 +324,8 @@ ECHINUS_API echinus_status echinus_mesh_intersections(const echinus_mesh* a, con
 
 /// How far the vertices of one mesh are inside another.
 typedef struct echinus_penetration {
-    int32_t known; ///< 1: the other mesh is closed. Otherwise there are no vertices inside
+    /// 1: the other mesh is closed, and an exact map can hold it. Otherwise there are no vertices inside.
+    int32_t known;
     uint32_t vertex_count;
     uint32_t deepest_vertex; ///< ECHINUS_NONE without a vertex inside
     float depth;             ///< its distance from the other surface
