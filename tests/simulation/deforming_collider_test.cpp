@@ -36,9 +36,9 @@ SimulationOptions surfaces(bool self = false) {
 }
 
 /// Where a point of the mesh is at a time.
-using Deformation = std::function<Vec3d(const Vec3d& point, double seconds)>;
+using DeformationOverTime = std::function<Vec3d(const Vec3d& point, double seconds)>;
 
-TriangleMesh deformed(TriangleMesh mesh, const Deformation& deform, double seconds) {
+TriangleMesh deformed(TriangleMesh mesh, const DeformationOverTime& deform, double seconds) {
     for (Vec3f& v : mesh.vertices) v = Vec3f(deform(Vec3d(v), seconds));
     return mesh;
 }
@@ -62,7 +62,7 @@ Vec3d shear(const Vec3d& p, double t) {
 }
 
 /// Leads the collider's vertices along, and judges every frame. @return the most pairs in a frame
-std::size_t most_pairs(Simulation& simulation, const TriangleMesh& model, const Deformation& deform,
+std::size_t most_pairs(Simulation& simulation, const TriangleMesh& model, const DeformationOverTime& deform,
                        int frame_count) {
     const double dt = simulation.options().time_step;
     std::size_t most = 0;
@@ -75,8 +75,9 @@ std::size_t most_pairs(Simulation& simulation, const TriangleMesh& model, const 
     return most;
 }
 
-void expect_nothing_meets_while(const TriangleMesh& model, const Deformation& deform, Deformable sheet,
-                                int frame_count, Collider collider, const SimulationOptions& options) {
+void expect_nothing_meets_while(const TriangleMesh& model, const DeformationOverTime& deform,
+                                Deformable sheet, int frame_count, Collider collider,
+                                const SimulationOptions& options) {
     Simulation simulation(std::move(sheet), {std::move(collider)}, options);
     EXPECT_EQ(most_pairs(simulation, model, deform, frame_count), 0u);
     EXPECT_EQ(simulation.profile().unresolved_count, 0u);
@@ -85,8 +86,9 @@ void expect_nothing_meets_while(const TriangleMesh& model, const Deformation& de
     EXPECT_LT(simulation.residual().largest, 0.1); // beside corners that are held
 }
 
-void expect_nothing_meets_while(const TriangleMesh& model, const Deformation& deform, Deformable sheet,
-                                int frame_count, const SimulationOptions& options = surfaces()) {
+void expect_nothing_meets_while(const TriangleMesh& model, const DeformationOverTime& deform,
+                                Deformable sheet, int frame_count,
+                                const SimulationOptions& options = surfaces()) {
     expect_nothing_meets_while(model, deform, std::move(sheet), frame_count, {.map = ExactMap::build(model)},
                                options);
 }
@@ -137,7 +139,7 @@ TEST(DeformingCollider, LeadsABodyAsAPoseDoesWhenAllVerticesJump) {
     options.gravity = {0, 0, 0};
     const auto jump = [](const Vec3d& p, double t) { return p + Vec3d{0, 0, t > 0.04 ? 0.1 : 0}; };
     const auto grow = [](const Vec3d& p, double t) { return p * (t > 0.04 ? 1.3 : 1.0); };
-    for (const Deformation& deform : {Deformation(jump), Deformation(grow)}) {
+    for (const DeformationOverTime& deform : {DeformationOverTime(jump), DeformationOverTime(grow)}) {
         Simulation simulation(body, colliders_of({ball}), options);
         EXPECT_EQ(most_pairs(simulation, ball, deform, 9), 0u);
         EXPECT_EQ(simulation.profile().unresolved_count, 0u);
