@@ -12,7 +12,7 @@
 /// The path argument that stands for standard input or standard output.
 inline constexpr std::string_view kStandardStream = "-";
 
-/// Where a command's result goes: a file that appears whole or not at all, or standard output for "-".
+/// The destination of a command's result: a file, which is written atomically, or standard output for "-".
 /// Members throw echinus::Error Unwritable.
 class Output {
   public:

@@ -24,11 +24,11 @@ struct Penetration {
     /// members keep their defaults.
     bool known = false;
     std::uint32_t vertex_count = 0;          ///< inside; vertices that no face uses do not count
-    std::uint32_t deepest_vertex = kNoIndex; ///< of equally deep ones the first
+    std::uint32_t deepest_vertex = kNoIndex; ///< the first of equally deep ones
     float depth = 0;                         ///< of the deepest vertex
 };
 
-/// Two of the given meshes, or one mesh and itself.
+/// A pair of the given meshes, or one mesh and itself.
 struct CheckedMeshes {
     std::uint32_t a = 0, b = 0; ///< a <= b; equal for a mesh and itself
     Intersections found;

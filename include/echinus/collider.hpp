@@ -75,9 +75,9 @@ struct PoseKey {
 };
 
 /// The pose at a time. Between two keys the translation is interpolated linearly, and the rotation at
-/// constant speed along the shorter arc (slerp: Shoemake 1985). Before the first key and after the last one
-/// the pose is that of the key. The result is bit-identical on every system. The cost grows with the
-/// logarithm of the number of keys.
+/// constant speed along the shorter arc (slerp: Shoemake 1985). Before the first key it is the pose of the
+/// first key, and after the last key that of the last. The result is bit-identical on every system. The cost
+/// grows with the logarithm of the number of keys.
 /// @pre there is at least one key, times ascend, poses are finite and rotations have unit length
 RigidTransform pose_at(std::span<const PoseKey> keys, double seconds);
 
@@ -93,16 +93,16 @@ struct VertexCache {
     double end_time() const { return start_time + sample_seconds * static_cast<double>(sample_count() - 1); }
 };
 
-/// The vertices at a time, interpolated linearly between samples. Before the first sample and after the last
-/// they are those of that sample. @pre the cache has a sample
+/// The vertices at a time, interpolated linearly between samples. Before the first sample they are those of
+/// the first, and after the last sample those of the last. @pre the cache has a sample
 std::vector<Vec3f> vertices_at(const VertexCache& cache, double seconds);
 
-// These queries behave like those of the map: they are noexcept, allocate as those do (and in a custom map),
-// and may run on any number of threads. A point is transformed to the local frame in double and rounded to
-// float there, so a collider may be far from the origin as long as the caller's float positions resolve it. A
-// point that overflows float in the local frame is outside. A point with NaN or infinity is outside and has
-// no contact and no crossing. The cost is that of the map's query, plus that of converting the pose to a
-// matrix, once per batch.
+// These queries behave like those of the map: they are noexcept, allocate only what the queries of the map
+// allocate, and may run on any number of threads. A point is transformed to the local frame in double and
+// rounded to float there, so a collider may be far from the origin as long as the caller's float positions
+// resolve it. A point that overflows float in the local frame is outside. A point with NaN or infinity is
+// outside and has no contact and no crossing. The cost is that of the map's query, plus that of converting
+// the pose to a matrix, once per batch.
 // @pre the pose is finite and its rotation has unit length, the scale is finite and has no 0, and a custom
 // map is not null. This is not checked: with another rotation the answers are meaningless.
 

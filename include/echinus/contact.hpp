@@ -17,8 +17,8 @@ enum class Feature : std::uint8_t {
     Vertex,
 };
 
-/// The answer of a query for one particle: whether it is inside, how deep, and where the push-out leads. It
-/// is the same for every kind of map.
+/// The answer of a query for one particle: whether it is inside, how deep, and where the push-out leads. Maps
+/// of every kind return this type.
 ///
 /// The push-out moves the particle to `point`. For a particle that is outside beyond the margin, or not
 /// finite, the members keep their defaults (not inside, depth 0, normal 0, no face), and `point` is the

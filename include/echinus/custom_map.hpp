@@ -33,7 +33,7 @@ class CustomMap {
     /// farther away may get a contact as well, since a map that measures along rays must search beyond the
     /// margin to find all of them.
     ///
-    /// The collider normalises normals and treats a contact with a non-finite point, normal or depth as none.
+    /// The collider normalises the normals, and ignores contacts whose point, normal or depth is not finite.
     /// A particle that is inside and has no normal stays where it is.
     /// @param points_local  [n]
     /// @param margin        not negative, finite

@@ -46,13 +46,15 @@ struct DistanceMapOptions {
     static constexpr std::uint32_t kMaxDivisions = 4096;
 
     DirectionGrid grid = DirectionGrid::Spherical; ///< decides which of the numbers below are used
-    /// Spherical and ellipsoidal: samples of phi; memory and build time grow with the product of the two.
+    /// Spherical and ellipsoidal: number of samples of phi; memory and build time grow with the product of
+    /// the two.
     std::uint32_t longitude_count = 200;
-    /// Spherical and ellipsoidal: samples of theta; doubling both divides the share of wrong signs by 2.5.
+    /// Spherical and ellipsoidal: number of samples of theta; doubling both divides the share of wrong signs
+    /// by 2.5.
     std::uint32_t colatitude_count = 200;
-    /// Octahedral: the number of parts of an edge of the octahedron, which has (2 divisions + 1)^2 samples;
-    /// 100 take as many bytes as 200 x 200. Cube: the number of parts of an edge of the cube, which has
-    /// 6 (divisions + 1)^2 samples; 81 take as many bytes as 200 x 200.
+    /// Octahedral and cube: the number of parts into which each edge is divided. The octahedron has (2
+    /// divisions + 1)^2 samples, and the cube 6 (divisions + 1)^2; 100 divisions of the octahedron, or 81 of
+    /// the cube, take as many bytes as 200 x 200 directions.
     std::uint32_t divisions = 100;
     VertexCorrection correction =
         VertexCorrection::Signed;                    ///< None is unbiased; Signed misses fewer particles
@@ -63,11 +65,11 @@ struct DistanceMapOptions {
     unsigned thread_count = 0; ///< 0: all cores. The bytes of the map do not depend on it.
 };
 
-/// Findings of the build, stored with the map.
+/// Statistics of the build, stored with the map.
 struct DistanceMapStatistics {
     std::uint32_t face_count = 0; ///< of the mesh
     std::uint32_t dropped_faces =
-        0; ///< faces with two corners at one point of the lattice, where they have no area
+        0; ///< faces with two corners at one point of the lattice, which have no area there
     std::uint32_t max_entries = 0;       ///< largest number of entries of one direction
     std::uint32_t corrected_entries = 0; ///< entries moved by the vertex correction
     std::uint32_t clamped_entries = 0;   ///< corrections cut short at 0, R or a neighbouring entry
@@ -94,9 +96,10 @@ struct DistanceMapView {
     EntryFormat entry_format = EntryFormat::Float32;
     VertexCorrection correction = VertexCorrection::None;
     bool centre_inside = false;
-    /// [direction_count + 1]; direction (i, j) of longitude i and colatitude j has index j * longitude_count
-    /// + i; of column i and row j of the unfolded octahedron (docs/file_format.md) j * (2 divisions + 1) + i;
-    /// of column i and row j of side s of the cube (s (divisions + 1) + j) (divisions + 1) + i.
+    /// [direction_count + 1] The index of a direction is j * longitude_count + i for longitude i and
+    /// colatitude j; j * (2 divisions + 1) + i for column i and row j of the unfolded octahedron
+    /// (docs/file_format.md); and (s (divisions + 1) + j) (divisions + 1) + i for column i and row j of side
+    /// s of the cube.
     std::span<const std::uint32_t> entry_offsets;
     /// [entry_count] or empty. Spherical and cube: distances from C. Octahedral: L1 radii |x| + |y| + |z|
     /// around C. Ellipsoidal: distances from C in the scaled frame.
@@ -177,8 +180,8 @@ bool contains(const DistanceMapView& map, Vec3f point_local) noexcept;
 /// If the solid has no far end along a ray, as in a hole of an open mesh, the bounding sphere is its end.
 Contact contact(const DistanceMapView& map, Vec3f point_local, float margin = 0) noexcept;
 
-/// contains() for many points, with vector instructions (instruction_set.hpp). The answers are the same, and
-/// it is several times as fast.
+/// contains() for many points, with the same answers. It uses vector instructions (instruction_set.hpp) and
+/// is several times as fast as single queries.
 /// @param points_local  [n]
 /// @param inside        [n] out: 1 inside, 0 outside. Must not overlap points_local.
 /// @param thread_count  0: all cores. Used for 32 768 points or more; the answers do not depend on it

@@ -38,7 +38,7 @@ class Error : public std::runtime_error {
 };
 
 /// Called with a sentence when a call violates a precondition (`@pre`) whose check costs next to nothing: the
-/// sizes of batches, and indices of colliders and particles. Where it returns, the call returns, too, without
+/// sizes of batches, and indices of colliders and particles. If it returns, the call returns, too, without
 /// any effect. The default throws std::logic_error. Functions that are noexcept then end the program.
 using PreconditionHandler = void (*)(const char* sentence);
 

@@ -51,11 +51,11 @@ struct ExactMapOptions {
     unsigned thread_count = 0; ///< 0: all cores. The bytes of the map do not depend on it.
 };
 
-/// Findings of the build, stored with the map.
+/// Statistics of the build, stored with the map.
 struct ExactMapStatistics {
     std::uint32_t face_count = 0; ///< of the mesh
-    /// Faces with two corners at one point of the lattice, where they have no area. They count for distances
-    /// only.
+    /// Faces with two corners at one point of the lattice, which have no area there. They are used for
+    /// distances only.
     std::uint32_t dropped_faces = 0;
     /// The largest number of faces in a band. In that band contains() tests each of them, at 1 to 13 ns per
     /// face.
@@ -79,8 +79,9 @@ class ExactMap {
   public:
     /// Builds the map on all cores. The same mesh and options give the same bytes for any number of threads.
     /// @param mesh  any mesh. If it is open or a triangle soup, the winding number is the generalised one
-    /// (Jacobson et al. 2013). Gaps in which that number stays away from every half have one stored answer;
-    /// everywhere else it is computed for each particle, in about a microsecond
+    /// (Jacobson et al. 2013). A gap in which that number stays away from every threshold (kCertainMargin)
+    /// has one stored answer; everywhere else the number is computed for each particle, in about a
+    /// microsecond
     /// @throws Error InvalidMesh as inspect() does, or when the bounding radius lies outside [1e-15, 1e15];
     /// InvalidOptions for divisions beyond kMaxDivisions, divisions together with a budget, or a budget that
     /// the coarsest map exceeds
@@ -156,11 +157,11 @@ void classify_batch(const ExactMapView& map, StridedSpan<const Vec3f> points_loc
 ///
 /// The result is NaN for a point with NaN, and otherwise 0 for a point with infinity. The query does not
 /// allocate. For an open surface it traverses a tree (Barill et al. 2018) of caps that close the holes, or of
-/// the faces of a soup, with an error bound for each distant group. This takes a microsecond with caps and 10
-/// to 60 in soups, and more for a smaller tolerance; contains() takes a third of a microsecond with caps and
-/// one to ten in soups.
-/// @param tolerance  the largest error of the result, which does not cross a half; not negative, NaN counts
-/// as 0, and 0 as 1e-8, the accuracy of double here
+/// the faces of a soup, with an error bound for each distant group. This takes 1 microsecond with caps and 10
+/// to 60 for soups, and more for a smaller tolerance; contains() takes a third of a microsecond with caps and
+/// 1 to 10 for soups.
+/// @param tolerance  the largest error of the result, which is never on the wrong side of an odd multiple of
+/// one half. Not negative; NaN counts as 0, and 0 as 1e-8, the accuracy of these sums in double
 float winding_number(const ExactMapView& map, Vec3f point_local, float tolerance = 1e-2F) noexcept;
 
 /// winding_number() for many points.
@@ -190,9 +191,9 @@ void winding_number_batch(const ExactMapView& map, StridedSpan<const Vec3f> poin
 /// NaN counts as 0
 Contact contact(const ExactMapView& map, Vec3f point_local, float margin = 0) noexcept;
 
-/// contains() for many points, with vector instructions (instruction_set.hpp). The answers are the same, and
-/// from 8 points on it is up to eight times as fast. Each thread keeps 90 KB of memory from its first call
-/// on; without that memory the points are processed one by one.
+/// contains() for many points, with the same answers. It uses vector instructions (instruction_set.hpp), and
+/// for 8 points or more it is up to eight times as fast as single queries. Each thread keeps 90 KB of memory
+/// from its first call on; without that memory the points are processed one by one.
 /// @param points_local  [n]
 /// @param inside        [n] out: 1 inside, 0 outside. Must not overlap points_local
 /// @param thread_count  0: all cores. Used for 32 768 points or more; the answers do not depend on it
@@ -217,19 +218,19 @@ void contacts_batch(const ExactMapView& map, StridedSpan<const Vec3f> points_loc
 /// in most signed distance fields. That is the opposite of Contact::depth, which is positive inside.
 ///
 /// The function works for every point, however far away. The value is that of contact() with an infinite
-/// margin, thus exact for the snapped mesh (within 3.8e-6 R of that for the given one) and rounded to float.
-/// The sign is that of contains(), even if the distance is 0: it is then -0 inside, so std::signbit() tells
-/// whether the point is inside. Where parts overlap or are nested, the distance is to the nearest face, even
-/// if that lies inside the solid. For an open surface the sign follows the generalised winding number;
-/// classify() says where it is certain.
+/// margin, so it is exact for the snapped mesh (within 3.8e-6 R of the distance from the given one) and
+/// rounded to float. The sign is that of contains(), even if the distance is 0: it is then -0 inside, so
+/// std::signbit() tells whether the point is inside. Where parts overlap or are nested, the distance is to
+/// the nearest face, even if that lies inside the solid. For an open surface the sign follows the generalised
+/// winding number; classify() says where it is certain.
 ///
 /// The result is NaN for a point with NaN, and otherwise infinite for a point with infinity. The gradient is
 /// 0 in both cases. The query does not allocate. The cost is that of contact() with an infinite margin.
 /// @param gradient  out, unless null: the unit vector along which the distance grows fastest. It points from
 /// the nearest point of the surface to a point outside, and from a point inside to the nearest point of the
-/// surface. Within two lattice steps of the surface it is the
-///                  pseudonormal (see contact()). Where several points of the surface are nearest (on the
-///                  medial axis), it is that of the first of their faces in the map's order
+/// surface. Within two lattice steps of the surface it is the pseudonormal (see contact()). Where several
+/// points of the surface are nearest (on the medial axis), it is that of the first of their faces in the
+/// map's order
 float signed_distance(const ExactMapView& map, Vec3f point_local, Vec3f* gradient = nullptr) noexcept;
 
 /// signed_distance() for many points, with the same answers, bit for bit, at the cost of contacts_batch()

@@ -70,12 +70,12 @@ struct WindingTree;
 struct ExactMapView {
     static constexpr int kBandUnit = 16;
     static constexpr int kBoxUnit = 32;
-    /// In place of a gap's winding number: the number is not constant in the gap, because the surface is
-    /// open.
+    /// Stored instead of a gap's winding number if the number is not constant in the gap, because the surface
+    /// is open.
     static constexpr std::int16_t kUncertain = std::numeric_limits<std::int16_t>::min();
-    /// In place of a gap's winding number: there is no gap, but a long band that was split in two. For a
-    /// particle in the lower half, crossings between the origin and the particle are counted; for one in the
-    /// upper half, those beyond the particle.
+    /// Stored instead of a gap's winding number if there is no gap, but a long band that was split in two.
+    /// For a particle in the lower half, crossings between the origin and the particle are counted; for one
+    /// in the upper half, those beyond the particle.
     static constexpr std::int16_t kSplit = kUncertain + 1;
 
     Vec3f centre;     ///< C, local

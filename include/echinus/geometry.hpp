@@ -14,8 +14,8 @@ ECHINUS_EXPORT_BEGIN
 /// Frames are right-handed. Lengths are in the caller's unit.
 namespace echinus {
 
-/// In place of the index of a face, a particle or a collider: there is none, or it is not known. All indices
-/// in arrays and results are std::uint32_t.
+/// The index of a face, a particle or a collider that does not exist or is not known. All indices in arrays
+/// and results are std::uint32_t.
 inline constexpr std::uint32_t kNoIndex = 0xFFFFFFFF;
 
 template <typename T>
@@ -90,8 +90,9 @@ struct Rotation {
     static Rotation about(const Vec3d& axis, double angle_rad);
 
     Vec3d apply(const Vec3d& v) const;
-    /// The axis, whose length is the angle in radians, at most pi: about(vector, length(vector)) is the same
-    /// rotation. It is 0 for the identity. The result is bit-identical on every machine.
+    /// The rotation vector, which points along the axis and whose length is the angle in radians, at most pi:
+    /// about(vector, length(vector)) is the same rotation. It is 0 for the identity. The result is
+    /// bit-identical on every machine.
     Vec3d vector() const;
     Rotation inverse() const { return {w, -x, -y, -z}; }
     Rotation normalised() const;

@@ -17,8 +17,8 @@ namespace echinus {
 /// Three vertex indices, counter-clockwise seen from outside.
 using Triangle = std::array<std::uint32_t, 3>;
 
-/// A triangle soup with shared vertices, the input of every map. It has no invariants; inspect() reports its
-/// properties.
+/// Triangles that share vertices by index, from which every map is built. A mesh has no invariants; inspect()
+/// reports its properties.
 struct TriangleMesh {
     std::vector<Vec3f> vertices; ///< [vertex_count] positions in the caller's unit, relative to `origin`
     std::vector<Triangle> faces; ///< [face_count]
@@ -181,7 +181,7 @@ struct RepairedMesh {
 
 /// Makes a repaired copy. Makes only the repairs that the options request and reports every change. The order
 /// is: welding of seams, duplicate faces, doubled patches, slivers, orientation, filling of seams, the last
-/// five again until nothing changes, holes, inside-out parts, inner faces, sheets. Faces keep their order,
+/// five repeated until nothing changes, holes, inside-out parts, inner faces, sheets. Faces keep their order,
 /// and new faces are appended. Vertices do not change, except those of thickened sheets; some may become
 /// unused. Vertices are distinguished by index: call weld() first, or close seams, if equal positions mean
 /// the same vertex. The same mesh and options give the same bytes on every machine.
@@ -199,8 +199,8 @@ RepairedMesh repair(const TriangleMesh& mesh, const RepairOptions& options);
 TriangleMesh weld(const TriangleMesh& mesh);
 
 /// Generalised winding number of a point: the solid angle of all faces over 4 pi (Jacobson et al. 2013).
-/// It is 1 inside a closed mesh with outward faces, 0 outside, in between on the surface, and NaN for a
-/// point that is not finite. The function visits all faces and is independent of every map: it is a
+/// For a closed mesh with outward faces it is 1 inside, 0 outside, and between the two on the surface. It is
+/// NaN for a point that is not finite. The function visits all faces and is independent of every map: it is a
 /// reference for tests, not a query.
 /// @pre indices are in range
 double winding_number(const TriangleMesh& mesh, const Vec3d& point);

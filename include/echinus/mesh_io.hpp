@@ -17,19 +17,20 @@ ECHINUS_EXPORT_BEGIN
 /// Mesh files. They belong to the library echinus::io, on which echinus::core does not depend.
 namespace echinus {
 
-/// Reads OBJ, PLY (text and binary), STL (text and binary), OFF, glTF 2.0, GLB and 3DS, as the file name's
-/// extension says. All meshes of the file are joined, polygons are triangulated, equal positions are
-/// welded and vertices that no face uses are dropped; points, lines (see read_mesh_and_edges() for these),
-/// normals, colours and materials are ignored. Nothing is repaired: inspect() reports the faults of the
-/// result. Faces are numbered in the order of the file; a polygon of k corners counts as its k - 2
-/// triangles, and a triangle strip in a PLY file as its triangles with three different corners.
-/// Coordinates are read in double. If floats could not represent the shape, as with geographic
-/// coordinates, the mesh has an origin (TriangleMesh::origin); otherwise coordinates are rounded to the
-/// nearest float. The same file gives the same mesh.
+/// Reads OBJ, PLY (text and binary), STL (text and binary), OFF, glTF 2.0, GLB and 3DS, depending on the file
+/// name's extension. All meshes of the file are joined, polygons are triangulated, equal positions are welded
+/// and vertices that no face uses are dropped; points, lines (see read_mesh_and_edges() for these), normals,
+/// colours and materials are ignored. Nothing is repaired: inspect() reports the faults of the result. Faces
+/// are numbered in the order of the file; a polygon of k corners counts as its k - 2 triangles, and a
+/// triangle strip in a PLY file as its triangles with three different corners. Coordinates are read in
+/// double. If floats could not represent the shape, as with geographic coordinates, the mesh has an origin
+/// (TriangleMesh::origin); otherwise coordinates are rounded to the nearest float. The same file gives the
+/// same mesh.
 ///
 /// Text is ASCII or UTF-8, with or without a byte order mark, with line ends of Unix, Windows or old Macs;
 /// it may be padded with Ctrl-Z or zeros. Bytes after the faces of a binary STL are ignored unless they
-/// could be faces. Numbers of a text PLY or OFF file may be wrapped over lines. OFF is read as text.
+/// could be faces. The numbers of a face or vertex in a text PLY or OFF file may be spread over several
+/// lines. OFF is read as text.
 ///
 /// From a glTF file the meshes of the default scene, or else of the first scene, are read in their rest pose:
 /// placed by their nodes or by the bones of their skins, morphed by their default weights, and copied for
@@ -55,10 +56,10 @@ struct MeshAndEdges {
 /// @throws Error as read_mesh(); InvalidMesh only if there are neither faces nor lines
 MeshAndEdges read_mesh_and_edges(const std::filesystem::path& path);
 
-/// Writes OBJ, PLY (binary), STL (binary) or OFF, as the file name's extension says. Floats that are read
-/// back have the same bits. A mesh with an origin is written in the file's frame, in decimals (also in STL)
-/// or as doubles (PLY). The file is written under a temporary name in the target's folder and then renamed,
-/// so a failure leaves no partial file and keeps the old one.
+/// Writes OBJ, PLY (binary), STL (binary) or OFF, depending on the file name's extension. Floats that are
+/// read back have the same bits. A mesh with an origin is written in the file's frame, in decimals (also in
+/// STL) or as doubles (PLY). The file is written under a temporary name in the target's folder and then
+/// renamed, so a failure leaves no partial file and keeps the old one.
 ///
 /// @throws Error Unwritable, WrongFormat for another extension, or InvalidMesh as inspect() does
 void write_mesh(const std::filesystem::path& path, const TriangleMesh& mesh);
@@ -73,26 +74,26 @@ void write_mesh_and_edges(const std::filesystem::path& path, const MeshAndEdges&
 /// A body, and the changes that made it valid.
 struct TetrahedraFile {
     TetrahedralMesh mesh; ///< valid; every vertex is used
-    /// Number of tetrahedra that were negative and had two corners exchanged. The order of corners is a
-    /// convention of the file; the body is the same.
+    /// Number of tetrahedra with negative volume, in which two corners were exchanged. The order of corners
+    /// is a convention of the file; the body is the same.
     std::size_t turned_tetrahedra = 0;
     std::size_t dropped_vertices = 0; ///< number of vertices that no tetrahedron uses
 };
 
 /// Reads .msh (Gmsh 2.2 and 4.1, text and binary), .vtk (legacy, an unstructured grid, text and binary) and
-/// TetGen's .node with .ele. Either path names the TetGen pair, whose names differ only in the extension;
-/// indices count from 0 or 1. Points, lines, planar cells and data are ignored; volume cells other than
-/// four-node tetrahedra are rejected. Tetrahedra keep their order. Coordinates are read as by read_mesh().
-/// Positions are not welded.
+/// TetGen's .node with .ele. Either file of TetGen's pair may be named, since the names differ only in the
+/// extension; indices count from 0 or 1. Points, lines, planar cells and data are ignored; volume cells other
+/// than four-node tetrahedra are rejected. Tetrahedra keep their order. Coordinates are read as in
+/// read_mesh(). Positions are not welded.
 ///
 /// @throws Error Unreadable, WrongFormat, Damaged or InvalidMesh as read_mesh() does. InvalidMesh also for
 /// a flat tetrahedron, and for two tetrahedra on the same side of a common face, as when an inverted one
 /// is folded over its neighbour; the message contains their indices, from 0
 TetrahedraFile read_tetrahedra(const std::filesystem::path& path);
 
-/// Writes .msh (Gmsh 2.2, text) or .vtk (legacy, text), as the file name's extension says. Floats that are
-/// read back have the same bits; a mesh with an origin is written as doubles in the file's frame. The file is
-/// written like that of write_mesh().
+/// Writes .msh (Gmsh 2.2, text) or .vtk (legacy, text), depending on the file name's extension. Floats that
+/// are read back have the same bits; a mesh with an origin is written as doubles in the file's frame. The
+/// file is replaced as in write_mesh().
 ///
 /// @throws Error Unwritable, WrongFormat for another extension, or InvalidMesh as
 /// require_valid_tetrahedra() does
@@ -113,9 +114,9 @@ void write_tetrahedra(const std::filesystem::path& path, const TetrahedralMesh& 
 /// @param frames_per_second  positive
 /// @param animation          the name of the animation; may be empty if the file has only one
 /// @throws Error as read_mesh() does; InvalidMesh if the number of vertices, or a face of a folder's mesh or
-/// of a file with an animation, differs from the model's; if there is no animation, or several of which none
-/// is named; if the animation moves no vertex, moves a node with a matrix, or has keys out of order or not
-/// finite; if a vertex of a mesh with bones has no bone; or if there are more than 2^28 positions. The
+/// of a file with an animation, differs from the model's; if there is no animation, or there are several and
+/// none is named; if the animation moves no vertex, moves a node with a matrix, or has keys out of order or
+/// not finite; if a vertex of a mesh with bones has no bone; or if there are more than 2^28 positions. The
 /// message begins with the path
 VertexCache read_vertex_cache(const std::filesystem::path& path, const TriangleMesh& mesh,
                               double frames_per_second, std::string_view animation = {});

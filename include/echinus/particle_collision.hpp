@@ -22,8 +22,8 @@ struct ParticleCollisionOptions {
     /// Accept exact maps of open meshes. Nothing is guaranteed for them: near a hole the inside is only
     /// estimated, so particles may get in there.
     bool allow_open_colliders = false;
-    /// Threads that share the work of correct(); 0 means all cores. The results do not depend on it, bit for
-    /// bit. More than one thread needs oneTBB; they spin while they wait during a call.
+    /// Threads that share the work of correct(); 0 means all cores. The results are bit-identical for any
+    /// number. More than one thread needs oneTBB; they spin while they wait during a call.
     unsigned thread_count = 1;
 };
 
@@ -89,7 +89,7 @@ class ParticleCollision {
     /// collision starts afresh in the next step. Preconditions and errors are those of set_collider_pose().
     void place_collider(std::size_t collider_index, const RigidTransform& pose);
 
-    /// Sets the friction of one collider, in place of that of the options.
+    /// Sets the friction of one collider, which overrides that of the options.
     /// @pre collider_index < colliders().size()
     /// @throws Error InvalidOptions for a friction out of range
     void set_collider_friction(std::size_t collider_index, double friction);
@@ -114,7 +114,7 @@ class ParticleCollision {
     /// @param seconds  the duration of the step; positive
     /// @return the indices of particles whose positions were corrected, ascending; valid until the next call
     /// @throws Error InvalidOptions for arrays of different sizes, an inverse mass that is negative or not
-    /// finite, or a duration that is not positive; then nothing has changed
+    /// finite, or a duration that is not positive; if it throws, nothing has changed
     std::span<const std::uint32_t> correct(const SolverStep& step, double seconds);
 
     /// The colliders in their present poses.

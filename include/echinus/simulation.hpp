@@ -59,7 +59,7 @@ struct CollisionFilter {
 /// Particles that are held, moved along a path, and released.
 struct Handle {
     std::vector<std::uint32_t> particles; ///< not pinned, each in at most one handle
-    /// The path of the handle: poses over the time since the simulation began, interpolated as by pose_at().
+    /// The path of the handle: poses over the time since the simulation began, interpolated as in pose_at().
     /// The particles move rigidly with the handle from their positions at 0 s. Without keys the handle does
     /// not move.
     std::vector<PoseKey> keys{};
@@ -237,10 +237,10 @@ struct NewtonOptions {
 };
 
 /// The paper's method (section 2.3), for reproduction and comparison: Verlet integration, distance
-/// constraints of whose error each relaxation removes a share (Jakobsen 2001), and collision of particles.
-/// More relaxations per second make a stiffer cloth, so frames of 1/240 s or less are needed: halving the
-/// step doubles the computing time and leaves a quarter of the stretch. This solver rejects tetrahedra and
-/// measures no loads.
+/// constraints, relaxed one after the other (Jakobsen 2001), and collision of particles. Each relaxation of a
+/// constraint removes a share of its error. More relaxations per second make a stiffer cloth, so frames of
+/// 1/240 s or less are needed: halving the step doubles the computing time and leaves a quarter of the
+/// stretch. This solver rejects tetrahedra and measures no loads.
 struct JakobsenOptions {
     /// Number of relaxations per frame, of all distance constraints and then of all contacts. More
     /// relaxations take longer and leave less stretch.
@@ -266,7 +266,7 @@ struct SimulationOptions {
     /// Distance in units that the deformable keeps from colliders. By default it is half the mean rest length
     /// of the structural constraints or, for soft bodies, half the mean edge length (docs/thickness.md).
     /// Newton: at least a fiftieth of the mean edge length. Jakobsen: 0 is possible but slow, since particles
-    /// on the surface itself need a query in every relaxation, and one face in twenty is cut.
+    /// on the surface itself need a query in every relaxation, and the model intersects one face in twenty.
     std::optional<double> thickness{};
     /// Coulomb's coefficient; 0 is no friction. Jakobsen: the tangential motion relative to the collider is
     /// reduced by the coefficient times the length of the push-out, and is not reversed.
@@ -279,7 +279,7 @@ struct SimulationOptions {
     /// Largest distance in units of a particle from the initial middle of the deformable. A particle farther
     /// away ends the simulation as diverged. 0 means 10 000 times the initial extent of the deformable.
     double bound = 0;
-    /// Threads that compute a frame; 0 means all cores. The results do not depend on it, bit for bit. More
+    /// Threads that compute a frame; 0 means all cores. The results are bit-identical for any number. More
     /// than one thread needs oneTBB; they spin while they wait during a frame.
     unsigned thread_count = 1;
     /// Wind in every frame for which blow() is not called, with the arguments of blow(). A rate of 0 means no
@@ -293,7 +293,8 @@ struct SimulationOptions {
     const NewtonOptions& newton() const { return std::get<NewtonOptions>(solver); }
     JakobsenOptions& jakobsen() { return std::get<JakobsenOptions>(solver); }
     const JakobsenOptions& jakobsen() const { return std::get<JakobsenOptions>(solver); }
-    /// Whether edges and faces collide with colliders, and with each other. Not with Jakobsen.
+    /// Whether edges and faces collide with colliders, and whether they collide with each other. Both are
+    /// false with Jakobsen.
     bool surfaces_collide() const {
         return kind() == SolverKind::Newton && newton().collision != CollisionMode::Particles;
     }
@@ -328,13 +329,13 @@ struct Load {
 /// collider, or between two elements of the deformable.
 struct ContactPoint {
     Vec3d position;         ///< on the deformable, when the contact last exerted a force; world coordinates
-    Vec3d normal;           ///< unit, towards the deformable; towards its first part where both are its own
+    Vec3d normal;           ///< unit, towards the deformable or, in self-collision, its first element
     double gap;             ///< when the contact last exerted a force; positive
-    double normal_impulse;  ///< on the deformable (its first part) along the normal in the frame, N s
+    double normal_impulse;  ///< in the frame, along the normal, on the deformable or its first element, N s
     Vec3d friction_impulse; ///< the same, perpendicular to the normal, N s
     std::uint32_t collider; ///< kNoIndex: the deformable is in contact with itself
-    /// The particles of the first element, followed by those of the second one in self-collision: a vertex
-    /// and the three of a face, or two and two of edges. Unused entries are kNoIndex.
+    /// The particles of the deformable's element, followed in self-collision by those of the second one: a
+    /// vertex and the three corners of a face, or the two ends of either edge. Unused entries are kNoIndex.
     std::array<std::uint32_t, 4> particles;
 };
 
@@ -345,16 +346,16 @@ struct SimulationProfile {
     double collision_seconds = 0;    ///< contact, and moving the colliders
     std::uint64_t query_count = 0;   ///< Jakobsen: particle queries, counted per iteration and collider
     std::uint64_t contact_count = 0; ///< Newton: active contacts, per step; Jakobsen: queries that pushed
-    /// Jakobsen: queries that needed the map; with an exact map a particle that has hardly moved is answered
-    /// from memory.
+    /// Jakobsen: queries that needed the map; with an exact map, the query of a particle that has hardly
+    /// moved is answered from cached data.
     std::uint64_t map_query_count = 0;
-    /// Jakobsen: number of times that a particle was rescued: after the relaxations of a frame it was no
-    /// longer free of all exact maps, and was moved back to a free position. docs/conventions.md defines
+    /// Jakobsen: number of times that a particle was rescued, that is, moved back to a free position because
+    /// after the relaxations of a frame it was no longer free of all exact maps. docs/conventions.md defines
     /// free, rescued and lost.
     std::uint64_t rescued_count = 0;
-    /// Jakobsen: number of times that a particle was lost: it was once free of an exact map and ended a frame
-    /// not free of it. It counts once for each such map, and again in each such frame. A particle that began
-    /// inside and has not been outside yet does not count.
+    /// Jakobsen: number of times that a particle was lost, that is, ended a frame no longer free of an exact
+    /// map of which it had once been free. It counts once for each such map, and again in each such frame. A
+    /// particle that began inside and has not been outside yet does not count.
     std::uint64_t lost_count = 0;
     /// Where surfaces collide: number of times that the displacement of a particle in a frame or substep was
     /// truncated, because its edges or faces could have met a surface on the path.
@@ -443,8 +444,8 @@ class Simulation {
     /// that cannot be placed there counts as lost.
     ///
     /// @throws Error Diverged, naming the frame, in this and in each further step; as teleport(); as
-    /// ExactMap::build() if no map can be built from the vertices of a vertex cache: then nothing has
-    /// changed, and the simulation can continue after set_collider_cache() with another cache
+    /// ExactMap::build() if no map can be built from the vertices of a vertex cache: in that case nothing
+    /// changes, and the simulation can continue after set_collider_cache() with another cache
     void step();
 
     const Deformable& deformable() const;
@@ -460,7 +461,7 @@ class Simulation {
     bool at_rest() const;
     const SimulationProfile& profile() const;
     /// The residual at the end of the last frame. With Jakobsen, a large residual calls for more relaxations
-    /// or smaller steps. It takes about a third of the time of a relaxation of all constraints.
+    /// or smaller steps. Computing it takes about a third of the time of a relaxation of all constraints.
     Residual residual() const;
     /// XXH64 hash of the bits of all positions and velocities.
     std::uint64_t state_hash() const;
@@ -502,8 +503,8 @@ class Simulation {
     /// @throws Error InvalidOptions when the motion is not finite or the length of its rotation differs from
     /// 1 by more than 1e-4, a collider does not exist, the solver is Jakobsen, only one of a collider and the
     /// particles attached to it is teleported, or, where surfaces collide, the deformable would
-    /// intersect a collider; the last error comes from step() if the time is in the future. Then nothing has
-    /// changed, and the teleport is dropped
+    /// intersect a collider; the last error comes from step() if the time is in the future. After an error
+    /// nothing has changed, and the teleport is dropped
     void teleport(const Teleport& teleport);
 
     // Deforming colliders: their vertices move, and their faces stay the same. Preconditions are
@@ -517,7 +518,7 @@ class Simulation {
     /// @param vertices_local  [vertex_count] the vertices of the mesh from which its exact map was built, in
     /// the same order
     /// @throws Error InvalidOptions for another number of vertices, a position that is not finite, a collider
-    /// without an exact map, or where only particles collide; as ExactMap::build(). Then nothing has
+    /// without an exact map, or where only particles collide; as ExactMap::build(). If it throws, nothing has
     /// changed
     void set_collider_vertices(std::size_t collider_index, std::span<const Vec3f> vertices_local);
 
@@ -529,8 +530,8 @@ class Simulation {
 
     /// Newton: the force and torque that the deformable exerted on a collider in the last frame by contact
     /// and friction, averaged over the frame. It is 0 before the first frame, and always with Jakobsen. A
-    /// program with its own rigid bodies should rather leave them to the frame by set_collider_free()
-    /// (examples/08_load): to apply the load of the previous frame to them is stable only for small steps.
+    /// program with its own rigid bodies should let step() move them, by set_collider_free()
+    /// (examples/08_load): applying the load of the previous frame to them is stable only for small steps.
     /// @pre collider_index < colliders().size()
     Load load_on(std::size_t collider_index) const;
 
@@ -550,8 +551,8 @@ class Simulation {
     /// @pre particle < particle_count(), and the velocity is finite
     void set_particle_velocity(std::size_t particle, const Vec3d& velocity);
 
-    /// Sets the wind for one frame. Particles take on the share rate * time_step of the velocity of the air
-    /// relative to a face along the face's normal, averaged over the surrounding faces. Air slips along
+    /// Sets the wind for one frame. Each particle takes on the share rate * time_step of the velocity of the
+    /// air relative to the surrounding faces, along their normals and averaged over them. Air slips along
     /// faces. Call this before each frame, in which it replaces the wind of the options.
     /// @param wind  velocity of the air, units per second; 0 is air at rest, which slows motion
     /// @param rate  per second; higher for lighter cloth. Not negative
@@ -569,7 +570,7 @@ class Simulation {
     /// @throws Error Unwritable
     void save_state(const std::filesystem::path& path) const;
 
-    /// Restores a saved state: the following frames are bit-identical to those that followed it. The
+    /// Restores a saved state: the following frames are bit-identical to those that followed the saving. The
     /// simulation must have been made from the same deformable, colliders in their initial poses, and
     /// options; a collider that followed a vertex cache must already follow the same one. Poses, velocities
     /// and keyframes come from the state. A custom map is not compared. Times in profile() stay as they are.
@@ -578,7 +579,7 @@ class Simulation {
     /// @param name  name of the bytes, with which error messages begin
     /// @throws Error WrongFormat, UnsupportedVersion or Damaged for bytes that are not a state of this
     /// version, truncated or changed; InvalidOptions for a state of another simulation, naming the
-    /// difference. Then nothing has changed
+    /// difference. If it throws, nothing has changed
     void restore_state(std::span<const std::byte> bytes, const std::string& name = "the saved state");
     /// Restores a state from a file. @throws Error as above, and Unreadable; the message begins with the path
     void restore_state(const std::filesystem::path& path);

@@ -36,8 +36,8 @@ struct SurfaceCollisionOptions {
 ///
 /// After correct() no face intersects a model or, with self_collision, another face. The exceptions, which
 /// unresolved_count() counts, are those of CollisionMode::Surfaces. Only particles collide with
-/// a collider that has no exact map. Contact begins to push at the thickness, and pushes harder the closer a
-/// face is; after a hard impact the distance may therefore be small. Copies are independent. Different
+/// a collider that has no exact map. Contact forces set in at a distance equal to the thickness and grow as a
+/// face comes closer, so the distance may be small after a hard impact. Copies are independent. Different
 /// threads may use different objects at the same time, but only one thread may use an object at a time.
 class SurfaceCollision {
   public:
@@ -78,8 +78,9 @@ class SurfaceCollision {
     /// @param velocities  [n] in and out, units per second; or empty
     /// @param seconds     the duration of the step; positive
     /// @return the indices of particles whose positions were corrected, ascending; valid until the next call
-    /// @throws Error InvalidOptions for arrays of other sizes and a duration that is not positive; then
-    /// nothing has changed. Diverged if a collider leaves all bounds; then the object cannot be used any more
+    /// @throws Error InvalidOptions for arrays of other sizes and a duration that is not positive, without
+    /// changing anything; Diverged if a collider leaves all bounds, after which the object cannot be used any
+    /// more
     std::span<const std::uint32_t> correct(std::span<Vec3f> positions, std::span<Vec3f> velocities,
                                            double seconds);
 

@@ -30,9 +30,10 @@ namespace echinus {
 using TrianglePoints = std::array<Vec3f, 3>;
 
 /// Does the triangle have a point in common with the surface? Touching counts. Corners are snapped to the
-/// lattice like particles, so that neighbours stay neighbours; then the answer is exact. Farther than 32 R
-/// from the map's centre, corners are rounded as coarsely as floats in units of lattice steps, and a corner
-/// farther than 10^32 R counts as not finite. The query does not allocate.
+/// lattice like particles, so triangles that share a corner still share it; for the snapped triangle the
+/// answer is exact. Farther than 32 R from the map's centre, corners are rounded as coarsely as floats in
+/// units of lattice steps, and a corner farther than 10^32 R counts as not finite. The query does not
+/// allocate.
 bool intersects(const ExactMapView& map, const TrianglePoints& triangle_local) noexcept;
 
 /// The distance of a triangle from the surface.

@@ -157,7 +157,7 @@ void draw_text(Image& image, double x, double y, std::string_view text, double h
 double text_width(std::string_view text, double height_px);
 
 /// Puts pictures of one size side by side, row after row.
-/// @throws Error InvalidOptions when there is none, their sizes differ, or the page is larger than
+/// @throws Error InvalidOptions when there are no pictures, their sizes differ, or the page is larger than
 /// RenderOptions allows
 Image arrange(std::span<const Image> pictures, std::uint32_t column_count);
 

@@ -214,7 +214,7 @@ void add_exact_options(Command command, BuildArguments& arguments) {
         command
             .add("--cells-per-octant", &arguments.cells_per_octant,
                  "Cells in each octant of directions, rounded down to a square number; by default "
-                 "chosen by the number of faces")
+                 "chosen according to the number of faces")
             .range(1U, kMostCells)
             .type_name("COUNT"),
         command
@@ -224,9 +224,11 @@ void add_exact_options(Command command, BuildArguments& arguments) {
                 "as many cells as fit. By default, without --cells-per-octant, 512 B per face plus "
                 "64 KiB")
             .excludes("--cells-per-octant"),
-        add_choice<InsideRule>(command, "--rule", arguments.exact.rule,
-                               {{"nonzero", InsideRule::Nonzero}, {"parity", InsideRule::Parity}},
-                               "The inside where parts of the mesh overlap")};
+        add_choice<InsideRule>(
+            command, "--rule", arguments.exact.rule,
+            {{"nonzero", InsideRule::Nonzero}, {"parity", InsideRule::Parity}},
+            "Which points are inside where parts of the mesh overlap: those with a winding "
+            "number other than 0, or those with an odd one")};
 }
 
 void add_distance_options(Command command, BuildArguments& arguments) {
@@ -237,26 +239,26 @@ void add_distance_options(Command command, BuildArguments& arguments) {
          {"octahedral", DirectionGrid::Octahedral},
          {"cube", DirectionGrid::Cube},
          {"ellipsoidal", DirectionGrid::Ellipsoidal}},
-        "Grid of directions: longitude and colatitude, as in the paper; the faces of an "
-        "octahedron, which keeps flat faces flat; the faces of a cube, evenly by angle; or longitude and "
-        "colatitude of an ellipsoid with the proportions of the mesh");
+        "Grid of directions: spherical, in longitude and colatitude, as in the paper; octahedral, which "
+        "keeps flat faces flat; cube, evenly spaced in angle; or ellipsoidal, in longitude and colatitude "
+        "of an ellipsoid with the proportions of the mesh");
     const Option directions =
         command
             .add_numbers("--directions", 'x', {&options.longitude_count, &options.colatitude_count},
-                         "Samples of longitude and colatitude")
+                         "Numbers of samples of longitude and colatitude")
             .type_name("COUNTxCOUNT")
             .default_text("200x200");
     const Option divisions =
         command
             .add("--divisions", &options.divisions,
-                 "Number of parts of each edge of the octahedron or cube; 100 or 81 take as many "
-                 "bytes as 200x200 directions")
+                 "Number of parts into which each edge of the octahedron or cube is divided; 100 parts "
+                 "for the octahedron, or 81 for the cube, take as many bytes as 200x200 directions")
             .range(DistanceMapOptions::kMinDivisions, DistanceMapOptions::kMaxDivisions)
             .type_name("COUNT")
             .show_default();
     const Option pole = add_choice<PoleAxis>(command, "--pole", options.pole_axis,
                                              {{"x", PoleAxis::X}, {"y", PoleAxis::Y}, {"z", PoleAxis::Z}},
-                                             "Axis of the mesh through the poles of the grid");
+                                             "Axis of the mesh on which the poles of the grid lie");
     arguments.counted_only = {directions, pole};
     arguments.divided_only = {divisions};
     arguments.distance_only = {
@@ -268,7 +270,7 @@ void add_distance_options(Command command, BuildArguments& arguments) {
                                      {{"signed", VertexCorrection::Signed},
                                       {"paper", VertexCorrection::Paper},
                                       {"none", VertexCorrection::None}},
-                                     "Correction for vertices between the samples"),
+                                     "Correction for vertices of the mesh between the samples"),
         add_choice<EntryFormat>(command, "--entries", options.entry_format,
                                 {{"float32", EntryFormat::Float32}, {"unorm16", EntryFormat::Unorm16}},
                                 "Format of a stored distance")};

@@ -247,7 +247,7 @@ void run(const CheckArguments& arguments) {
 
 void add_check_command(Command program) {
     Command command =
-        program.add_command("check", "Find the faces of meshes that intersect, where and how deep");
+        program.add_command("check", "Find which faces of meshes intersect, where, and how deep");
     const auto arguments = std::make_shared<CheckArguments>();
     command.add("MESH", &arguments->paths, "Mesh files (OBJ, PLY, STL, OFF, glTF, GLB, 3DS), or -")
         .required()

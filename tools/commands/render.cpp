@@ -165,8 +165,8 @@ void render_map(const MapPicture& arguments) {
 void add_map_picture(Command program) {
     const auto arguments = std::make_shared<MapPicture>();
     Command command = program.add_command(
-        "map", "A map next to its model: the faces of an exact map, coloured by the length of their "
-               "lists, or the surface reconstructed from a distance map, layer by layer");
+        "map", "A map next to its model: the faces of an exact map, coloured by how many faces a query "
+               "there may have to test, or the surface reconstructed from a distance map, layer by layer");
     command.add("MAP", &arguments->map, "Map file, made by echinus build, or -").required().type_name("");
     command.add("MESH", &arguments->mesh.path, "The mesh from which it was built, or -")
         .required()

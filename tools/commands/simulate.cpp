@@ -436,7 +436,8 @@ void add_options(Command command, SimulateArguments& arguments) {
         .add("-o,--output", &arguments.target,
              "Folder for cloth.obj, cloth.pc2, collider.obj and report.json")
         .type_name("DIR");
-    command.add("--html", &arguments.page, "Page that plays the simulation, a single file, or -")
+    command
+        .add("--html", &arguments.page, "HTML page to write, a single file that plays the simulation, or -")
         .not_empty()
         .type_name("FILE");
     command
@@ -449,7 +450,7 @@ void add_options(Command command, SimulateArguments& arguments) {
              "Folders in which the scene's model is looked up, before the scene's own, its ../models, and "
              "models")
         .type_name("DIR");
-    command.add("--frames", &arguments.frame_limit, "Frame limit in place of the scene's")
+    command.add("--frames", &arguments.frame_limit, "Frame limit; overrides the scene's")
         .range(1, 1'000'000'000)
         .type_name("COUNT");
     command
@@ -459,7 +460,7 @@ void add_options(Command command, SimulateArguments& arguments) {
         .type_name("COUNT");
     command
         .add("--particles", &arguments.particle_count,
-             "Use a sheet of about COUNT particles in place of the scene's, with the same proportions")
+             "Replace the scene's sheet by one of about COUNT particles with the same proportions")
         .range(4, 4096 * 4096)
         .type_name("COUNT");
     command
@@ -477,7 +478,7 @@ void add_options(Command command, SimulateArguments& arguments) {
         {"surfaces", CollisionMode::Surfaces},
         {"surfaces_and_self", CollisionMode::SurfacesAndSelf}};
     add_choice(command, "--collision", arguments.collision, modes,
-               "The parts that collide, in place of the scene's collision");
+               "The parts that collide; overrides the scene's collision");
     command.add_former("--surfaces", "--collision surfaces, or particles for off");
     command.add_former("--self", "--collision surfaces_and_self, or surfaces for off");
     command
@@ -489,7 +490,7 @@ void add_options(Command command, SimulateArguments& arguments) {
     add_choice(command, "--judge", arguments.judges_all,
                std::vector<std::pair<std::string, bool>>{{"last", false}, {"all", true}},
                "Saved frames to test for intersecting faces");
-    command.add_flag("--obj", arguments.obj, "Write frames/cloth_NUMBER.obj in place of cloth.pc2");
+    command.add_flag("--obj", arguments.obj, "Write frames/cloth_NUMBER.obj instead of cloth.pc2");
     command.add_flag("--json", arguments.json, "Print the report as one JSON object");
 }
 

@@ -13,7 +13,7 @@ bl_info = {
 
 
 class Refusal(Exception):
-    """What the add-on cannot do with what it was given: one sentence for the user."""
+    """The add-on cannot do the work; the text is one sentence for the user."""
 
 
 # Imported late, so that the files that need no Blender can be imported without it.

@@ -8,12 +8,12 @@ SURFACES = {"CURVE", "FONT", "META", "SURFACE"}
 
 
 def bodies_of(context):
-    """The bodies, each once, and what *More Bodies* has that is none, in words.
+    """The bodies, each once, and the members of *More Bodies* that are left out, in words.
 
     Raises
     ------
     Refusal
-        There is none, or one without faces.
+        There is no body, or one has no faces.
     """
     settings = context.scene.echinus
     more = [each for each in settings.more_bodies.all_objects if each != settings.cloth] if settings.more_bodies else []

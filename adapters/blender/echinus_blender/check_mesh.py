@@ -20,7 +20,7 @@ KINDS = [
 
 
 class CheckMesh(Reporting, bpy.types.Operator):
-    """Select what is wrong with the active mesh, without its modifiers"""
+    """Select the faults of the active mesh, without its modifiers"""
 
     bl_idname = "echinus.check_mesh"
     bl_label = "Check Mesh"
@@ -28,7 +28,7 @@ class CheckMesh(Reporting, bpy.types.Operator):
 
     kinds: bpy.props.EnumProperty(
         name="Faults",
-        description="What to look for",
+        description="The faults to look for",
         items=KINDS,
         options={"ENUM_FLAG"},
         default={kind for kind, _, _ in KINDS},
@@ -51,7 +51,7 @@ class CheckMesh(Reporting, bpy.types.Operator):
 
 
 def find_selection(echinus, thing, kinds):
-    """What was counted, in words, and where it is: vertices, edges (k, 2) and polygons."""
+    """The counts of faults, in words, and their places: vertices, edges (k, 2) and polygons."""
     require_mesh(thing, "active object")
     if thing.library or thing.data.library or thing.data.override_library:
         raise Refusal(f"{thing.name} is linked from another file, and nothing can be selected: check it there")

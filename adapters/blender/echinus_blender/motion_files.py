@@ -1,7 +1,7 @@
-"""The files of motions. Each run writes one of its own, so that undo, and blend files saved before, keep theirs.
+"""The files of motions. Each run writes a new file, so that undo, and blend files saved earlier, keep theirs.
 
-What no saved blend file plays is removed when another one is opened, which ends undo, or Blender closes; what the scene
-plays then stays, for File > Recover > Last Session.
+Motions that no saved blend file plays are removed when another file is opened, which ends undo, or when Blender closes;
+motions that the scene then plays stay, for File > Recover > Last Session.
 """
 
 import contextlib

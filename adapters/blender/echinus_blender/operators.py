@@ -1,5 +1,5 @@
-"""What operators share: errors in Blender's way, shown in its window, a RuntimeError for scripts; and object mode for a
-while, where alone the data of objects are what the user sees in other modes."""
+"""The common parts of operators: errors, which Blender shows in its window or raises as a RuntimeError in scripts; and a
+temporary object mode, since only there the data of objects are those that the user sees in other modes."""
 
 import contextlib
 

@@ -8,7 +8,7 @@ import numpy as np
 
 
 def write_point_cache(path, samples):
-    """Writes one sample a frame. The file appears whole or not at all; folders above it are made.
+    """Writes one sample per frame. The file is written atomically; folders above it are created.
 
     Parameters
     ----------

@@ -17,7 +17,7 @@ class Preferences(bpy.types.AddonPreferences):
 
     module_folder: bpy.props.StringProperty(
         name="Folder of the Module",
-        description="The folder that has the Python module echinus, such as the site-packages of a virtual"
+        description="The folder that contains the Python module echinus, such as the site-packages of a virtual"
         " environment. Empty: Blender's Python finds it",
         subtype="DIR_PATH",
     )

@@ -16,7 +16,7 @@ class RunOptions:
     Attributes
     ----------
     thickness
-        0: chosen by the library.
+        0 lets the library choose.
     """
 
     steps_per_second: int = 60
@@ -65,7 +65,7 @@ class Run:
     Raises
     ------
     Refusal, echinus.Error
-        What is at fault, in one sentence.
+        The fault, in one sentence.
     """
 
     def __init__(self, echinus, garment, bodies, options, frame_count, frames_per_second):
@@ -135,7 +135,7 @@ def _nearest_colliders(garment, colliders):
     return np.stack([garment.pins, np.argmin(distances, axis=0)], axis=1)
 
 
-# What the library says of a start, in the words of the panel.
+# The errors of the library about an initial state, in the words of the panel.
 
 #: Numbers of triangles and particles, which Blender does not show.
 PLACES = re.compile(r"(: (face|particle|the edge) |; the first is particle ).*")

@@ -24,12 +24,12 @@ from .run import Garment
 
 @dataclass
 class Sampled:
-    """What a run is made of.
+    """The input of a run.
 
     Attributes
     ----------
     skipped
-        What was to be a body and is none, in words.
+        The objects that were meant to be bodies and are left out, in words.
     matrices
         (4, 4) of the cloth in each frame: its motion is stored in its own frame.
     """
@@ -50,7 +50,7 @@ def sample(context):
     Raises
     ------
     Refusal
-        What is wrong with an object, naming it and the frame.
+        The fault of an object, naming the object and the frame.
     """
     scene = context.scene
     first, last = scene.frame_start, scene.frame_end
@@ -74,7 +74,7 @@ def sample(context):
 
 
 def played_modifiers(cloth):
-    """What a cloth does not begin with: its earlier motion, and what may change the number of its vertices."""
+    """The modifiers that a cloth does not begin with: its earlier motion, and those that may change the number of its vertices."""
     mine = motion_modifier_of(cloth)
     return list(modifiers_after_motion(cloth)) + ([mine] if mine else [])
 

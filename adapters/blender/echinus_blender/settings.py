@@ -1,4 +1,4 @@
-"""What the panel shows and operators read, kept in each scene."""
+"""The settings that the panel shows and operators read, stored in each scene."""
 
 import bpy
 
@@ -22,19 +22,19 @@ class Settings(bpy.types.PropertyGroup):
         poll=is_mesh,
     )
     more_bodies: bpy.props.PointerProperty(
-        name="More Bodies", description="All meshes of a collection, besides", type=bpy.types.Collection
+        name="More Bodies", description="A collection, all of whose meshes are further bodies", type=bpy.types.Collection
     )
 
     steps_per_second: bpy.props.IntProperty(
         name="Steps per Second",
-        description="More follow fast motion more closely, and take longer",
+        description="More steps follow fast motion more closely, and take longer",
         default=DEFAULTS.steps_per_second,
         min=24,
         soft_max=1000,
     )
     thickness: bpy.props.FloatProperty(
         name="Thickness",
-        description="What the cloth keeps from bodies. 0: chosen by the size of its faces",
+        description="The distance that the cloth keeps from bodies. 0: chosen according to the size of its faces",
         subtype="DISTANCE",
         default=0,
         min=0,
@@ -75,11 +75,11 @@ class Settings(bpy.types.PropertyGroup):
     )
     cache_path: bpy.props.StringProperty(
         name="Cache",
-        description="The PC2 file that takes the motion, replaced by every run, which undo does not bring back."
-        " Empty: a file of its own for every run, in a folder beside the blend file",
+        description="The PC2 file to which every run writes the motion; undo does not restore the previous one."
+        " Empty: every run writes a new file, in a folder next to the blend file",
         subtype="FILE_PATH",
     )
 
     result: bpy.props.StringProperty(
-        name="Result", description="What the last operator found", options={"SKIP_SAVE", "HIDDEN"}
+        name="Result", description="The result of the last operator", options={"SKIP_SAVE", "HIDDEN"}
     )

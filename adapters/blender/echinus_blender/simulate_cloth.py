@@ -19,7 +19,7 @@ SAMPLING_SECONDS = 0.05
 
 
 class SimulateCloth(Reporting, bpy.types.Operator):
-    """Simulate the cloth from the scene's first frame to its last. Esc cancels; undo brings the motion before back"""
+    """Simulate the cloth from the scene's first frame to its last. Esc cancels; undo restores the previous motion"""
 
     bl_idname = "echinus.simulate_cloth"
     bl_label = "Simulate Cloth"

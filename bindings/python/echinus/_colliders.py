@@ -84,20 +84,20 @@ class ContactPoints(NamedTuple):
     Attributes
     ----------
     positions
-        [contact, 3] The last position of the contact in the frame, on the deformable; world coordinates.
+        [contact, 3] Positions on the deformable, when the contact last exerted a force; world coordinates.
     normals
-        [contact, 3] Unit normals towards the deformable, or towards its first part if both parts are its own.
+        [contact, 3] Unit normals towards the deformable or, in self-collision, its first element.
     gaps
-        [contact] The last gap in the frame; positive.
+        [contact] The gap when the contact last exerted a force; positive.
     normal_impulses
-        [contact] The impulse on the deformable (its first part) along the normal in the frame, N s.
+        [contact] The impulse in the frame, along the normal, on the deformable or its first element, N s.
     friction_impulses
         [contact, 3] The impulse of friction, perpendicular to the normal, N s.
     colliders
         [contact] The index of the collider; -1 for a contact of the deformables with themselves.
     particles
-        [contact, 4] The particles of the first part, and then those of the second if it belongs to the deformables, too:
-        a vertex and the three of a face, or two and two of edges; -1 for unused entries.
+        [contact, 4] The particles of the deformable's element, followed in self-collision by those of the second one: a
+        vertex and the three corners of a face, or the two ends of either edge; -1 for unused entries.
     """
 
     positions: NDArray[np.float64]
@@ -143,7 +143,7 @@ def pose_at(keys: Sequence[PoseKey], seconds: float) -> PoseKey:
     """The pose at a time, interpolated between two keys: the position linearly, the rotation along the shorter
     arc (slerp).
 
-    Before the first key and after the last the pose is that of the key.
+    Before the first key it is the pose of the first key, and after the last key that of the last.
 
     Parameters
     ----------

@@ -30,7 +30,7 @@ class ParticleCollision:
     allow_open_colliders
         Accept exact maps of open meshes, for which nothing is guaranteed.
     threads
-        Threads that share a step; 0: all cores. The results do not depend on it, bit for bit (0 to 1024).
+        Threads that share a step; 0: all cores. The results are bit-identical for any number (0 to 1024).
 
     Raises
     ------
@@ -143,7 +143,7 @@ class SurfaceCollision:
     untangle
         Separate an initial state that intersects, or is inside the model, instead of rejecting it.
     threads
-        Threads that share a step; 0: all cores. The results do not depend on it, bit for bit (0 to 1024).
+        Threads that share a step; 0: all cores. The results are bit-identical for any number (0 to 1024).
 
     Raises
     ------

@@ -93,9 +93,9 @@ def make_cloth(
     row_count
         Particles along y. The particle (row, column) has the number row * column_count + column (2 to 8388608).
     width
-        Along x (positive).
+        Length along x (positive).
     height
-        Along y (positive).
+        Length along y (positive).
     position
         Initial pose of the middle of the sheet.
     rotation

@@ -17,9 +17,9 @@ ErrorCode = Literal[
 ]
 """The kinds of errors, for programs.
 
-``unreadable``, ``unwritable``: the system refused a file; ``wrong_format``, ``damaged``, ``unsupported_version``: what a
-file contains; ``invalid_mesh``, ``invalid_options``, ``invalid_scene``: what was given; ``diverged``: a simulation left all
-bounds.
+``unreadable``, ``unwritable``: the system refused a file; ``wrong_format``, ``damaged``, ``unsupported_version``: the
+contents of a file; ``invalid_mesh``, ``invalid_options``, ``invalid_scene``: an argument; ``diverged``: a simulation
+left all bounds.
 """
 
 

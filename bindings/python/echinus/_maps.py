@@ -121,7 +121,7 @@ class SweepHits(_Answers):
 
     @property
     def face(self) -> NDArray[np.int32]:
-        """(...) The face of the mesh."""
+        """(...) The index of the crossed face in the mesh."""
         return self._field("face", np.int32)
 
     @property
@@ -138,12 +138,12 @@ class SweepHits(_Answers):
 
 @dataclass(frozen=True)
 class ExactMapStatistics:
-    """The findings of the build of an exact map.
+    """The statistics of the build of an exact map.
 
     Attributes
     ----------
     dropped_faces
-        Faces without area on the map's lattice; they count for distances only.
+        Faces without area on the map's lattice; they are used for distances only.
     longest_list, mean_list
         Number of faces in a band: the largest, and the mean.
     expected_tests
@@ -165,7 +165,7 @@ class ExactMapStatistics:
 
 @dataclass(frozen=True)
 class DistanceMapStatistics:
-    """The findings of the build of a distance map.
+    """The statistics of the build of a distance map.
 
     Attributes
     ----------
@@ -198,11 +198,11 @@ class _Map(Generic[CoreMap]):
         Parameters
         ----------
         points : array_like (..., 3)
-            NaN and infinity are outside.
+            A point with NaN or infinity is outside.
         threads
             0: all cores. The answers do not depend on it.
         out : ndarray (...) of bool, optional
-            Takes the answers.
+            Receives the answers.
 
         Returns
         -------
@@ -218,7 +218,7 @@ class _Map(Generic[CoreMap]):
         Parameters
         ----------
         points : array_like (..., 3)
-            NaN and infinity have no contact.
+            A point with NaN or infinity has no contact.
         margin
             Points outside also get a contact if the surface is at most this far away; ``inf`` gives one to all points.
         threads
@@ -288,15 +288,17 @@ class ExactMap(_Map[_core.ExactMap]):
     mesh
         Anything with ``vertices`` and ``faces``. It may be open: see :attr:`Contacts.certain`.
     cells_per_octant
-        Cells in each octant of directions, rounded down to a square number; 0: chosen by the mesh. More cells take
-        memory and save time; they do not change any answer (0 to 262144).
+        Cells in each octant of directions, rounded down to a square number; 0: chosen according to the mesh. More
+        cells take memory and save time; they do not change any answer (0 to 262144).
     budget
         The largest size of the map, which gets as many cells as fit; 0: no limit. It cannot be combined with a
         number of cells (0 to 4e9 bytes).
     rule
-        The inside where parts of the model overlap: their union, or the points in an odd number of parts.
+        The points that count as inside where parts of the model overlap: those in any part, or those in an odd
+        number of parts.
     centre
-        The origin of the rays: the centre of the bounding sphere, or a point that is searched for short lists.
+        The origin of the rays: the centre of the bounding sphere, or a point found by a search for the fewest face
+        tests per query.
     threads
         Threads that build the map; 0: all cores. The map does not depend on it.
 
@@ -357,14 +359,14 @@ class ExactMap(_Map[_core.ExactMap]):
         Parameters
         ----------
         points : array_like (..., 3)
-            NaN has the distance NaN, and infinity is infinitely far.
+            A point with NaN has the distance NaN, and one with infinity is infinitely far.
         gradient
             Also return the unit vectors along which the distances grow fastest; 0 for points that are not
             finite.
         threads
             0: all cores. The answers do not depend on it.
         out : ndarray (...) of float32, optional
-            Takes the distances.
+            Receives the distances.
 
         Returns
         -------
@@ -390,13 +392,14 @@ class ExactMap(_Map[_core.ExactMap]):
         Parameters
         ----------
         points : array_like (..., 3)
-            NaN has the winding number NaN, and infinity has 0.
+            A point with NaN has the winding number NaN, and one with infinity has 0.
         tolerance
-            The largest error, which does not cross a half; 0 counts as 1e-8.
+            The largest error of the result, which is never on the wrong side of an odd multiple of one half; 0 counts
+            as 1e-8.
         threads
             0: all cores. The answers do not depend on it.
         out : ndarray (...) of float32, optional
-            Takes the winding numbers.
+            Receives the winding numbers.
         """
         return self._built.winding_number(points, number("tolerance", tolerance), out, threads_of(threads))
 
@@ -406,7 +409,7 @@ class ExactMap(_Map[_core.ExactMap]):
         Parameters
         ----------
         start, end : array_like (..., 3)
-            Shapes are broadcast. NaN and infinity meet nothing.
+            Shapes are broadcast. A segment with NaN or infinity meets nothing.
         threads
             0: all cores. The answers do not depend on it.
         """
@@ -420,7 +423,7 @@ class ExactMap(_Map[_core.ExactMap]):
 
     @property
     def statistics(self) -> ExactMapStatistics:
-        """The findings of the build."""
+        """The statistics of the build."""
         return ExactMapStatistics(**self._built.statistics)
 
 
@@ -437,17 +440,18 @@ class DistanceMap(_Map[_core.DistanceMap]):
     grid
         The grid of directions.
     divisions
-        Octahedral grid and cube: the number of parts of each edge (4 to 4096).
+        Octahedral and cube grid: the number of parts into which each edge is divided (4 to 4096).
     correction
-        The correction for vertices between the samples.
+        The correction for vertices of the mesh between the samples.
     entries
         The format of a stored distance; ``unorm16`` takes half the bytes, with an error of at most 7.6e-6 R, on
         octahedral and ellipsoidal grids 1.4e-5 R.
     pole_axis
-        Spherical and ellipsoidal grid: axis of the mesh through the poles of the directions, where samples crowd.
+        Spherical and ellipsoidal grid: the axis of the mesh on which the poles of the grid lie, where samples
+        crowd.
     centre
-        The origin of the rays: the centre of the bounding sphere, or a point that is searched for few wrong answers
-        near the surface.
+        The origin of the rays: the centre of the bounding sphere, or a point found by a search for the fewest wrong
+        answers near the surface.
     threads
         Threads that build the map; 0: all cores. The map does not depend on it.
 
@@ -477,7 +481,7 @@ class DistanceMap(_Map[_core.DistanceMap]):
 
     @property
     def statistics(self) -> DistanceMapStatistics:
-        """The findings of the build."""
+        """The statistics of the build."""
         return DistanceMapStatistics(**self._built.statistics)
 
 
@@ -497,7 +501,7 @@ def load(path: Path) -> AnyMap:
 
 
 def wrap(built: _core.ExactMap | _core.DistanceMap) -> AnyMap:
-    """The map around what the library made."""
+    """Wraps a map that the library made."""
     kind: type[AnyMap] = ExactMap if isinstance(built, _core.ExactMap) else DistanceMap
     result: Any = kind.__new__(kind)
     result._built = built

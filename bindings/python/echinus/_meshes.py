@@ -98,7 +98,7 @@ def _mesh_of(given: MeshLike, name: str) -> Mesh:
 
 
 def read_mesh(path: Path) -> Mesh:
-    """Reads OBJ, PLY, STL, OFF, glTF, GLB or 3DS, as the file name's extension says.
+    """Reads OBJ, PLY, STL, OFF, glTF, GLB or 3DS, depending on the file name's extension.
 
     All meshes of the file are joined, polygons are triangulated, equal positions are welded and vertices that
     no face uses are dropped. Nothing is repaired.
@@ -112,7 +112,7 @@ def read_mesh(path: Path) -> Mesh:
 
 
 def write_mesh(path: Path, mesh: MeshLike) -> None:
-    """Writes OBJ, PLY, STL or OFF, as the file name's extension says. The file is written atomically.
+    """Writes OBJ, PLY, STL or OFF, depending on the file name's extension. The file is written atomically.
 
     Raises
     ------
@@ -137,8 +137,8 @@ class MeshReport:
     Attributes
     ----------
     closed
-        Every edge is balanced: the same number of faces traverse it in either direction. Vertices of
-        unbalanced edges count as one if they are at most 2^-21 of the radius apart, as they do for maps.
+        Every edge is balanced: the same number of faces traverse it in either direction. Vertices of unbalanced edges
+        count as one if they are at most 2^-21 of the radius apart, as in all maps.
     manifold
         Every edge has at most two faces, and the faces at each vertex form one fan.
     orientable
@@ -406,7 +406,7 @@ class Penetration:
 
 @dataclass(frozen=True)
 class CheckedMeshes:
-    """Two of the meshes that were checked, or one and itself.
+    """A pair of the meshes that were checked, or one mesh and itself.
 
     Attributes
     ----------

@@ -22,7 +22,7 @@ from echinus._meshes import Mesh, MeshLike, Path, arrays_of, inspect, read_mesh
 
 #: Vertices and faces, and the edges that no face has.
 _Drawn = tuple["_core.Arrays | None", list[tuple[int, int]]]
-#: In place of a collider's model.
+#: Replaces the model of a collider.
 _Model = MeshLike | AnyMap | None
 
 
@@ -105,11 +105,11 @@ class Simulation:
     Parameters
     ----------
     deformable
-        Copied.
+        The deformable to simulate; it is copied.
     colliders
         Any number of colliders, each with its own pose and motion.
     frame_limit
-        Of :meth:`run`.
+        The default frame limit of :meth:`run`.
     time_step
         Seconds per frame. The paper's solver needs smaller steps: there, halving the step doubles the computing
         time and leaves a quarter of the stretch (1e-9 to 1e9 s).
@@ -125,7 +125,7 @@ class Simulation:
     rest_frame_count
         The number of consecutive frames for which all particles must be slow and near one position (1 to 1e9).
     rest_distance
-        The largest distance of a particle at rest from its position (0 to 1e9).
+        The distance from one position within which a particle at rest stays (0 to 1e9).
     rest_speed
         The largest speed of a particle at rest at the end of a frame (at least 0 length/s).
     gravity
@@ -179,13 +179,13 @@ class Simulation:
     wind
         Velocity of the air; needs ``wind_rate`` (-1e9 to 1e9 length/s).
     wind_rate
-        The share of the air's velocity relative to a face, along its normal, that particles take on per second;
-        higher for lighter cloth. 0: no air. Without ``wind`` the air is at rest and slows motion (0 to 1e9 1/s).
+        The rate at which particles take on the air's velocity relative to a face, along the face's normal; higher
+        for lighter cloth. 0: no air. Without ``wind`` the air is at rest and slows motion (0 to 1e9 1/s).
     pressure
         ``newton`` only: pressure inside the closed pieces of cloth in excess of the surrounding pressure; constant,
         like that of a pump (0 to 1e9 N/m^2).
     threads
-        Threads that compute a frame; 0: all cores. The results do not depend on it, bit for bit (0 to 1024).
+        Threads that compute a frame; 0: all cores. The results are bit-identical for any number (0 to 1024).
 
     Raises
     ------
@@ -260,16 +260,15 @@ class Simulation:
             The path of a JSON file, or its content; docs/scenes.md documents every key.
         model
             A mesh, which the scene may repair, or a map in place of the scene's model. For a scene with
-            several colliders this is a list with one for each; None selects the scene's own. A collider with
-            a vertex cache takes a mesh only.
+            several colliders this is a list with one for each; None selects the scene's own. For a collider with a
+            vertex cache it must be a mesh.
         cloth, rest_cloth
             Meshes in place of the files of the scene's cloth.
         model_folders
-            A folder, or several, in which the scene's files are looked up first; then the scene's folder,
-            its ``../models``, and ``models`` in the working folder.
+            A folder, or several, in which the scene's files are looked up first; the scene's folder, its ``../models``,
+            and ``models`` in the working folder follow.
         collision, untangle
-            In place of the scene's keys. With a distance map as ``model`` the default of ``collision`` is
-            ``particles``.
+            Override the scene's keys. With a distance map as ``model`` the default of ``collision`` is ``particles``.
         allow_open_colliders
             Accept a model that is not closed, for which nothing is guaranteed. The collision of surfaces
             does not need this option.
@@ -381,7 +380,7 @@ class Simulation:
 
     @property
     def frame_limit(self) -> int:
-        """Of :meth:`run`."""
+        """The default frame limit of :meth:`run`."""
         return self._frame_limit
 
     @property
@@ -404,7 +403,7 @@ class Simulation:
 
     @property
     def state_hash(self) -> int:
-        """A hash of the bits of all positions, to compare two runs."""
+        """A hash of the bits of all positions and velocities, to compare two runs."""
         return self._simulation.state_hash
 
     @property
@@ -452,12 +451,12 @@ class Simulation:
         Parameters
         ----------
         vertices : array_like (vertex_count, 3)
-            In the model's own frame, in the number and order of the mesh from which its map was built.
+            In the model's own frame: as many as the mesh from which its map was built has, in the same order.
 
         Raises
         ------
         Error
-            ``invalid_options``; then nothing has changed.
+            ``invalid_options``; in that case nothing changes.
         """
         self._simulation.set_collider_vertices(index("collider", collider), _core.float_array(vertices, "vertices"))
 
@@ -487,7 +486,7 @@ class Simulation:
         Raises
         ------
         Error
-            ``invalid_options``; then nothing has changed.
+            ``invalid_options``; in that case nothing changes.
         """
         self._simulation.set_collider_free(index("collider", collider), number("mass", mass))
 
@@ -500,7 +499,7 @@ class Simulation:
         """The contacts that were recorded in the last frame, as arrays that are copies.
 
         Their impulses divided by the time step sum to the opposite of :meth:`load_on` of each model, except for the
-        loads of attached particles and of truncated ones. ``jakobsen`` records none.
+        loads of attached particles and of particles whose displacement was truncated. ``jakobsen`` records none.
         """
         return ContactPoints(*self._simulation.contact_points())
 
@@ -525,7 +524,7 @@ class Simulation:
         return self._simulation.save_state()
 
     def restored(self, state: bytes) -> Simulation:
-        """Makes another simulation with the same inputs that resumes from a saved state bit for bit.
+        """Makes another simulation, with the inputs of this one, that resumes from a saved state bit for bit.
 
         This simulation does not change, and neither do views of its positions.
 
@@ -560,7 +559,7 @@ def _one_for_each(model: _Model | Sequence[_Model], collider_count: int) -> list
 
 
 class _Files:
-    """The files of a scene, and the folders that they are looked for in."""
+    """The files of a scene, and the folders in which they are looked up."""
 
     def __init__(self, folders: Sequence[pathlib.Path]) -> None:
         self.folders = folders

@@ -58,7 +58,7 @@ class TetrahedraFile:
     mesh
         Valid; every vertex is used.
     turned_tetrahedra
-        Negative tetrahedra that had two corners exchanged: the order is a convention of the file.
+        Tetrahedra with negative volume, in which two corners were exchanged: the order is a convention of the file.
     dropped_vertices
         Vertices that no tetrahedron uses.
     """
@@ -71,7 +71,7 @@ class TetrahedraFile:
 def read_tetrahedra(path: Path) -> TetrahedraFile:
     """Reads ``.msh`` (Gmsh 2.2 and 4.1), ``.vtk`` (legacy, an unstructured grid) or TetGen's ``.node`` with ``.ele``.
 
-    Either path names TetGen's pair. Points, lines, planar cells and data are ignored; volume cells other than
+    Either file of TetGen's pair may be named. Points, lines, planar cells and data are ignored; volume cells other than
     four-node tetrahedra are refused. Positions are not welded.
 
     Raises
@@ -84,7 +84,7 @@ def read_tetrahedra(path: Path) -> TetrahedraFile:
 
 
 def write_tetrahedra(path: Path, mesh: TetrahedralMesh) -> None:
-    """Writes ``.msh`` (Gmsh 2.2) or ``.vtk``, as the file name's extension says. The file is written atomically.
+    """Writes ``.msh`` (Gmsh 2.2) or ``.vtk``, depending on the file name's extension. The file is written atomically.
 
     Raises
     ------
@@ -273,7 +273,7 @@ class Embedding:
         positions : array_like (vertex_count, 3)
             Positions of the body's vertices; in a simulation with other particles they are a slice of its positions.
         out : ndarray (n, 3) of float32, optional
-            Takes the answers.
+            Receives the answers.
 
         Returns
         -------

@@ -1,7 +1,7 @@
 """Labels for learning: inside or outside, and signed distances, for points around each mesh of a corpus.
 
 ``python3 -m echinus label`` labels a folder (docs/labels.md). :func:`sample` gives the samples and labels of one mesh,
-:func:`label` labels many, :func:`verify` checks what is there.
+:func:`label` labels many, and :func:`verify` checks existing labels.
 """
 
 from echinus.corpus._corpus import Corpus

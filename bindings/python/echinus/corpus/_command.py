@@ -20,40 +20,40 @@ from echinus.corpus._verification import examine
 DEFAULT = Sampling()
 MOST = 2**32 - 1  # of workers, parts and the like
 WRONG_OPTIONS = 2  # exit codes
-ONLY_SURPLUS = 3  # of --verify where all labels are right, and there are files besides
+ONLY_SURPLUS = 3  # of --verify if all labels are right, but there are surplus files
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("meshes", nargs="+", help="folders, mesh files, and lists of them (.txt, a path a line)")
+    parser.add_argument("meshes", nargs="+", help="folders, mesh files, and lists of them (.txt, one path per line)")
     parser.add_argument("-o", "--output", required=True, help="folder of the labels")
     parser.add_argument("--format", choices=["occupancy", "deepsdf", "webdataset"], default="occupancy")
     parser.add_argument("--uniform", type=int, default=DEFAULT.uniform, help="points in the cube of the frame (%(default)s)")
     parser.add_argument("--near", type=int, default=DEFAULT.near, help="points near the surface (%(default)s)")
-    parser.add_argument("--sigmas", type=_numbers, default=DEFAULT.sigmas, help="how far, as standard deviations (0.01,0.05)")
-    parser.add_argument("--surface", type=int, default=DEFAULT.surface, help="points of the surface, with normals (%(default)s)")
+    parser.add_argument("--sigmas", type=_numbers, default=DEFAULT.sigmas, help="standard deviations of their offsets from the surface (0.01,0.05)")
+    parser.add_argument("--surface", type=int, default=DEFAULT.surface, help="points on the surface, with normals (%(default)s)")
     parser.add_argument("--frame", choices=["cube", "sphere", "none"], help="default: cube; sphere for deepsdf")
-    parser.add_argument("--padding", type=float, default=DEFAULT.padding, help="of the cube, as a share of its edge (%(default)s)")
+    parser.add_argument("--padding", type=float, default=DEFAULT.padding, help="padding of the cube, as a share of its edge (%(default)s)")
     parser.add_argument("--float16", action="store_true", help="store points in 16 bits; labels are those of the rounded points")
     parser.add_argument("--no-repair", action="store_true", help="take meshes as they are")
-    parser.add_argument("--close-holes", type=int, default=DEFAULT.close_holes, metavar="EDGES", help="fill holes of at most so many edges, up to 256")
+    parser.add_argument("--close-holes", type=int, default=DEFAULT.close_holes, metavar="EDGES", help="fill holes with at most this number of edges, up to 256")
     parser.add_argument("--drop-inner-faces", action="store_true", help="drop faces that lie within the solid")
-    parser.add_argument("--thicken", type=float, default=DEFAULT.thicken, metavar="SHARE", help="make solids of open parts, so thick as a share of the mesh's longest edge")
+    parser.add_argument("--thicken", type=float, default=DEFAULT.thicken, metavar="SHARE", help="thicken open parts into solids; thickness as a share of the longest edge of the mesh's bounding box")
     parser.add_argument("--min-certain", type=float, default=DEFAULT.min_certain, help="refuse meshes with a smaller share of certain labels (%(default)s)")
     parser.add_argument("--max-faces", type=int, default=DEFAULT.max_faces, help="refuse larger meshes (%(default)s)")
-    parser.add_argument("--time-limit", type=float, default=DEFAULT.time_limit, help="seconds for a mesh (%(default)s)")
-    parser.add_argument("--seed", type=int, default=0, help="other seeds, other samples (0)")
+    parser.add_argument("--time-limit", type=float, default=DEFAULT.time_limit, help="seconds for the labels of a mesh (%(default)s)")
+    parser.add_argument("--seed", type=int, default=0, help="seed of the random samples (0)")
     parser.add_argument("--archive-size", type=_count, default=64, help="meshes in each archive of webdataset (%(default)s)")
     parser.add_argument("--workers", type=_count, help="processes; default: one for each core")
     parser.add_argument("--memory", type=float, default=4, help="address space of a process, GiB (%(default)s)")
     parser.add_argument("--scheduler", help="address of a Dask scheduler, for instance tcp://host:8786")
     parser.add_argument("--shard", type=_shard, default=(0, 1), help="i/n: only the i-th of n parts, from 0")
-    parser.add_argument("--verify", action="store_true", help="compute nothing; check that all labels are there and unchanged (exit code 3: they are, among other files)")
+    parser.add_argument("--verify", action="store_true", help="compute nothing; check that all labels exist and are unchanged (exit code 3: they are, but there are other files)")
 
 
 def main(arguments: argparse.Namespace) -> int:
     try:
         sampling, memory = _sampling_of(arguments), _memory_of(arguments)
-        # Without its meshes, for what else may be wrong with it: meshes that are not there are no fault of the options.
+        # Without meshes, to find the other faults first: a missing mesh is not a fault of the options.
         corpus = Corpus([], arguments.output, arguments.format, sampling, archive_size=arguments.archive_size, shard=arguments.shard)
         if arguments.verify and corpus.shard != (0, 1):
             raise ValueError("--verify checks all parts together; leave out --shard")

@@ -1,4 +1,4 @@
-"""The matter of a run: meshes, how they are labelled, and to where."""
+"""The input and output of a run: the meshes, how they are labelled, and where the labels go."""
 
 from __future__ import annotations
 
@@ -20,22 +20,22 @@ UNFINISHED = ".unfinished"  # in the output folder: locks, and files that are be
 
 @dataclass(frozen=True)
 class Corpus:
-    """Meshes to label, how, and to where.
+    """Meshes to label, the settings, and the folder of the labels.
 
     Attributes
     ----------
     meshes
         The result of :func:`find_meshes`, in any order.
     output
-        The folder of the labels; all workers see it under this name.
+        The folder of the labels; all workers reach it by this path.
     form
         ``"occupancy"`` (Occupancy Networks), ``"deepsdf"`` or ``"webdataset"``.
     archive_size
-        Meshes in each archive of ``"webdataset"``. Which mesh comes into which depends on the meshes only.
+        Number of meshes in each archive of ``"webdataset"``. The archive of a mesh depends only on the meshes.
     max_bytes
         Larger mesh files are refused.
     shard
-        (i, n): only the i-th of n parts of the work, from 0.
+        (i, n): only part i of n parts of the work, counted from 0.
     """
 
     meshes: Sequence[Mesh]
@@ -62,14 +62,14 @@ class Corpus:
             raise ValueError(f"shard must be (i, n) with i from 0 to n - 1, not {self.shard}")
 
     def groups(self) -> list[tuple[str | None, tuple[Mesh, ...]]]:
-        """Meshes of all parts that are labelled together, and their archive, if they come into one."""
+        """For all parts: the groups of meshes that are labelled together, each with its archive if there is one."""
         if self.form != "webdataset":
             return [(None, (mesh,)) for mesh in self.meshes]
         starts = range(0, len(self.meshes), self.archive_size)
         return [(f"labels-{i:06d}.tar", tuple(self.meshes[start : start + self.archive_size])) for i, start in enumerate(starts)]
 
     def tasks(self, unfinished: str) -> list[Task]:
-        """The work of this part. Files are in the folder ``unfinished`` until they are whole."""
+        """The tasks of this part. Files are in the folder ``unfinished`` until they are complete."""
         i, n = self.shard
         return [
             Task(
@@ -85,9 +85,9 @@ class Corpus:
         ]
 
     def settings(self) -> Record:
-        """The first line of the manifest: labels made with others do not belong in the same folder.
+        """The first line of the manifest: labels made with other settings do not belong in the same folder.
 
-        The time limit is not among them: it decides which meshes have labels, but not what these are.
+        The time limit is not among them: it decides which meshes get labels, but not the values of the labels.
         """
         sampling = asdict(self.sampling) | {"sigmas": list(self.sampling.sigmas)}
         del sampling["time_limit"]

@@ -1,6 +1,6 @@
-"""Where tasks run: on processes of this machine, or on a Dask cluster.
+"""Engines, which run tasks in processes of this machine or on a Dask cluster.
 
-An engine yields each task with its records as they come, in any order; or with the reason why no worker survived it.
+An engine yields each task when it is finished, in any order, with its records, or with the reason why no worker survived it.
 """
 
 from __future__ import annotations
@@ -31,12 +31,12 @@ ATTEMPTS = 3  # a worker may be killed for other reasons than its task
 
 
 class MalformedAddress(ValueError):
-    """The address of a scheduler is malformed; one where nothing answers is an OSError."""
+    """The address of a scheduler is malformed; an address at which nothing answers gives an OSError."""
 
 
 class _Worker:
     def __init__(self, memory: int) -> None:
-        # Not by fork: threads of this process would be missing in the child, with their locks.
+        # Not by fork: the child would lack the threads of this process, but have the locks that they hold.
         context = multiprocessing.get_context("spawn")
         self.pipe, theirs = context.Pipe()
         self.process = context.Process(target=_serve, args=(theirs, memory), daemon=True)
@@ -53,7 +53,7 @@ class _Worker:
             pass  # it has died, which the pipe reports as well
 
     def take(self) -> list[Record] | None:
-        """The records of the task, or None where the worker has died."""
+        """Returns the records of the task, or None if the worker died."""
         try:
             result = self.pipe.recv()
         except (EOFError, OSError):
@@ -73,7 +73,7 @@ class _Worker:
 
 
 def _serve(pipe: Connection, memory: int) -> None:
-    """The life of a worker: with an address space so large that a mesh that needs more is refused."""
+    """The main loop of a worker, whose address space is limited so that a mesh that needs more is refused."""
     _end_with_parent()
     resource.setrlimit(resource.RLIMIT_AS, (memory, memory))
     _keep_freed_memory()
@@ -95,7 +95,8 @@ def _serve(pipe: Connection, memory: int) -> None:
 
 @contextlib.contextmanager
 def _deaf_to_interrupts() -> Iterator[None]:
-    """A process that is started meanwhile never hears Ctrl-C; the one that gives the tasks does, and ends its workers."""
+    """A process that is started meanwhile ignores Ctrl-C; the process that distributes the tasks handles it, and ends its
+    workers."""
     resource_tracker.ensure_running()  # its start, which comes with the first process, would unblock the signal
     before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
     try:
@@ -105,7 +106,7 @@ def _deaf_to_interrupts() -> Iterator[None]:
 
 
 def _end_with_parent() -> None:
-    """A worker of a run that was killed would write beside the next run, which has the lock."""
+    """Otherwise the worker of a killed run would go on writing next to the next run, which has the lock."""
     with contextlib.suppress(AttributeError):  # Linux only
         set_death_signal = 1
         ctypes.CDLL(None).prctl(set_death_signal, signal.SIGKILL)
@@ -115,8 +116,8 @@ def _end_with_parent() -> None:
 
 
 def _keep_freed_memory() -> None:
-    """Samples and labels are arrays of a megabyte or so. By default the C library gives each back to the system when it
-    goes, and the pages of the next one take longer to come than the numbers in it."""
+    """Samples and labels are arrays of about a megabyte. By default the C library returns each freed array to the system, and
+    mapping the pages of the next one takes longer than computing its numbers."""
     with contextlib.suppress(AttributeError):  # other C libraries have no such options
         set_option = ctypes.CDLL(None).mallopt
         trim_threshold, mmap_threshold = -1, -3
@@ -125,7 +126,7 @@ def _keep_freed_memory() -> None:
 
 
 def on_processes(tasks: Iterable[Task], worker_count: int, memory: int) -> Iterator[Outcome]:
-    """A worker that dies is replaced, and its task tried again."""
+    """Runs the tasks; a worker that dies is replaced, and its task is tried again."""
     again: deque[Task] = deque()
     source = iter(tasks)
     deaths: dict[Task, int] = {}
@@ -169,9 +170,9 @@ def _next(worker: _Worker, source: Iterator[Task], again: deque[Task]) -> None:
 
 @contextlib.contextmanager
 def dask_cluster(scheduler: str, progress: TextIO | None) -> Iterator[Engine]:
-    """The workers of an existing cluster, which see the same files under the same names.
+    """Runs the tasks on the workers of an existing cluster, which reach the same files by the same paths.
 
-    The scheduler repeats the tasks of workers that died, as often as its setting ``allowed-failures`` says.
+    The scheduler repeats the tasks of workers that died, at most as often as its setting ``allowed-failures`` allows.
     """
     dask = _distributed()
     try:

@@ -1,6 +1,6 @@
-"""Samples as the bytes of files, in the conventions of others.
+"""Converts samples to the bytes of files in the formats of other projects.
 
-The same samples give the same bytes: nothing is compressed, and no file has a date.
+The same samples give the same bytes: nothing is compressed, and no file contains a date.
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ def files_of(samples: Samples, name: str, form: Format) -> dict[str, bytes]:
 
 
 def _occupancy_networks(s: Samples, name: str) -> dict[str, bytes]:
-    """points.npz and pointcloud.npz of Mescheder et al. 2019: packed bits, and where the frame lies."""
+    """points.npz and pointcloud.npz of Mescheder et al. 2019: packed bits, and the position and size of the frame."""
     frame: dict[str, Any] = {"loc": s.loc, "scale": np.float64(s.scale)}
     occupancies, certain = np.packbits(s.occupancy), np.packbits(s.certain)
     points = frame | {"points": s.points, "occupancies": occupancies, "certain": certain}
@@ -74,7 +74,7 @@ def _webdataset(s: Samples, name: str) -> dict[str, bytes]:
 
 
 def archive_of(files: Mapping[str, bytes]) -> bytes:
-    """A tar archive of them."""
+    """A tar archive of the files."""
     packed = io.BytesIO()
     with tarfile.open(fileobj=packed, mode="w", format=tarfile.PAX_FORMAT) as archive:
         for name, content in files.items():

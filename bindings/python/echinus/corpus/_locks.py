@@ -1,7 +1,7 @@
-"""Runs do not write the same labels at once.
+"""Locks, so that no two runs write the same labels at the same time.
 
-The locks go with the process, however it ends. Files that it has not finished go with :func:`unfinished_files`, or with those
-of the next run.
+The locks are released when the process ends, for whatever reason. :func:`unfinished_files` removes the unfinished files of a
+run at its end or, if it was killed, when the next run begins.
 """
 
 from __future__ import annotations
@@ -20,14 +20,14 @@ from echinus.corpus._corpus import UNFINISHED, Corpus
 
 @contextlib.contextmanager
 def alone(corpus: Corpus) -> Iterator[None]:
-    """While no other run works on the same part, or on the whole.
+    """Holds the locks that exclude other runs on the same part, or on the whole.
 
-    All runs lock the folder: one of a part shares it. So what is in it is removed by none while another works.
+    All runs lock the folder; runs on parts share this lock. So no run removes files while another one works.
 
     Raises
     ------
     ValueError
-        Another run does.
+        Another run holds them.
     """
     i, n = corpus.shard
     folder = os.open(corpus.output, os.O_RDONLY)
@@ -43,7 +43,10 @@ def alone(corpus: Corpus) -> Iterator[None]:
 
 @contextlib.contextmanager
 def one_at_a_time(corpus: Corpus) -> Iterator[None]:
-    """For the moments in which parts that run at once look at what the others have written. Within :func:`alone`."""
+    """Holds a lock while a part reads the files that other parts, which run at the same time, have written.
+
+    Within :func:`alone`.
+    """
     unfinished = os.open(pathlib.Path(corpus.output, UNFINISHED), os.O_RDONLY)
     try:
         _lock(unfinished, fcntl.LOCK_EX)

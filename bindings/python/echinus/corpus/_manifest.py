@@ -1,4 +1,4 @@
-"""The manifest: with which settings the labels of a folder were made, and a record of each mesh and each file."""
+"""The manifest of a folder: the settings of its labels, and a record of each mesh and each file."""
 
 from __future__ import annotations
 
@@ -19,9 +19,9 @@ Change = Literal["changed", "unreadable"]
 
 
 class Manifest:
-    """manifest.jsonl: the settings, then a line for each mesh and each file, sorted in the end.
+    """manifest.jsonl: the settings, then a line for each mesh and each file, sorted at the end.
 
-    While a run goes on, lines are added as results come; one that a crash cut short is dropped.
+    During a run, lines are appended as results arrive; a line that a crash truncated is dropped.
     """
 
     def __init__(self, corpus: Corpus, unfinished: str) -> None:
@@ -39,10 +39,10 @@ class Manifest:
             self._write([])
 
     def divide(self, tasks: Sequence[Task], progress: TextIO | None) -> tuple[list[Task], list[Task]]:
-        """Into those that are finished, and those that are left.
+        """Divides tasks into those that are finished and those that remain.
 
-        A task is finished where each of its meshes has a record, need not be tried again, and has the mesh file of its
-        record, and where the files that the records name are there.
+        A task is finished if each of its meshes has a record, need not be tried again and has an unchanged mesh file, and if
+        the files that the records name exist.
         """
         records = list(records_of(self.path))
         whole = {r["file"] for r in records if "file" in r and _size(self.path.parent / r["file"]) == r["bytes"]}
@@ -63,14 +63,14 @@ class Manifest:
 
         complete = [task for task in tasks if is_complete(task)]
         meshes = [mesh for task in complete for mesh in task.meshes]
-        # A mesh that cannot be read now keeps the labels that it has.
+        # A mesh that cannot be read now keeps its labels.
         changed = {mesh for mesh, change in changes_of(meshes, record_of, self.settings["max_bytes"], progress) if change == "changed"}
         finished = {task.meshes for task in complete if changed.isdisjoint(task.meshes)}
         return [task for task in tasks if task.meshes in finished], [task for task in tasks if task.meshes not in finished]
 
     def keep(self, finished: Sequence[Task], left: Iterable[Task]) -> None:
-        """Forgets what is not about finished tasks, and removes the files of those that are left: a mesh that is labelled
-        anew may be refused. Archives are written over, and what belongs to no task stays."""
+        """Drops the records of other tasks, and removes the files of those that remain: a mesh that is labelled again may be
+        refused. Archives are overwritten, and files that belong to no task stay."""
         for name in (name for task in left for name, _ in task.meshes):
             for file in names_of(name, self.settings["format"]):
                 _remove(file, self.path.parent)
@@ -84,11 +84,11 @@ class Manifest:
             file.writelines(_line(record) for record in records)
 
     def sort(self) -> None:
-        """The same bytes for the same labels, in whatever order they came."""
+        """Sorts the lines, so that the same labels give the same bytes in whatever order they arrived."""
         self._write(r for r in records_of(self.path) if "echinus" not in r)
 
     def discard_settings(self) -> None:
-        """Of a run that ended without a record: they bind no other."""
+        """Removes the settings of a run that ended without a record, so that they do not bind the next one."""
         with contextlib.suppress(OSError, ValueError):  # the error that ended the run says more
             if all("echinus" in record for record in records_of(self.path)):
                 self.path.unlink()
@@ -102,7 +102,7 @@ class Manifest:
 def changes_of(
     meshes: Sequence[Mesh], record_of: Mapping[str, Record], most: int, progress: TextIO | None
 ) -> Iterator[tuple[Mesh, Change]]:
-    """Meshes whose files are not the ones of their records, for instance because they could not be read then."""
+    """Meshes whose files differ from those of their records, for instance because they could not be read then."""
     for mesh, now in zip(meshes, fingerprints([path for _, path in meshes], most, progress), strict=True):
         record = record_of[mesh[0]]
         before = (record.get("source_bytes"), record.get("source_sha256"))
@@ -118,7 +118,7 @@ def _extension(path: Any) -> str:
 
 
 def records_of(manifest: pathlib.Path) -> Iterator[Record]:
-    """Without a last line that was cut short."""
+    """The records of a manifest, without a truncated last line."""
     if not manifest.exists():
         return
     if not manifest.is_file():
@@ -154,7 +154,7 @@ def _no_record(manifest: pathlib.Path, number: int, why: str) -> str:
 
 
 def manifests(folder: pathlib.Path) -> list[tuple[pathlib.Path, int]]:
-    """The manifests of a folder, and of how many parts each is."""
+    """The manifests of a folder, each with the number of parts of its run."""
     names = ((path, re.fullmatch(r"manifest(?:-\d+-of-([1-9]\d*))?\.jsonl", path.name)) for path in sorted(folder.glob("manifest*.jsonl")))
     return [(path, int(match[1] or 1)) for path, match in names if match]
 
@@ -164,7 +164,7 @@ def _parts(count: int) -> str:
 
 
 def difference(manifest: pathlib.Path, settings: Record) -> str | None:
-    """Says which setting of a manifest is another."""
+    """Says which setting of a manifest differs."""
     theirs: Record = next(records_of(manifest), {})
     if "echinus" not in theirs:
         return f"{manifest}: there are no settings in its first line; remove the file to label all meshes again"
@@ -192,7 +192,7 @@ def _size(path: pathlib.Path) -> int | None:
 
 
 def _remove(name: str, folder: pathlib.Path) -> None:
-    """A file, and the folders of its name that are empty then."""
+    """Removes a file, and the folders of its name that are then empty."""
     path = folder / name
     path.unlink(missing_ok=True)
     with contextlib.suppress(OSError):  # other files are in it, or it is not there

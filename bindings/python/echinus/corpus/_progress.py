@@ -1,4 +1,4 @@
-"""How far a run is, and what runs and verification both say."""
+"""The progress of a run, and the phrases that runs and verification share."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ def may_succeed(refused: int) -> str:
 
 
 class Bar:
-    """A line that is written over on a terminal, and lines in a log."""
+    """Progress as one line that is overwritten on a terminal, or as several lines in a log."""
 
     def __init__(self, stream: TextIO | None, total: int) -> None:
         self._stream, self._total = stream, total

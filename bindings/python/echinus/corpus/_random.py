@@ -1,4 +1,4 @@
-"""Random numbers that are the same on every machine: integers of Philox, and + - * / sqrt of doubles."""
+"""Random numbers that are the same on every machine: they use the integers of Philox, and + - * / sqrt of doubles."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ def normal_quantile(p: Doubles) -> Doubles:
 
 
 def _polynomial(x: Doubles, coefficients: tuple[float, ...]) -> Doubles:
-    """The highest power first."""
+    """Evaluates a polynomial; the coefficient of the highest power is the first."""
     result = np.full_like(x, coefficients[0])
     for c in coefficients[1:]:
         result *= x

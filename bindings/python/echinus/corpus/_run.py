@@ -1,4 +1,4 @@
-"""A run over a corpus: what is left to do, and what is done about meshes that kill workers."""
+"""A run over a corpus: the remaining tasks, and the treatment of meshes that crash workers."""
 
 from __future__ import annotations
 
@@ -27,11 +27,12 @@ class Summary:
     Attributes
     ----------
     labelled, refused, points
-        Of this run.
+        The numbers of this run.
     again
-        Those of the refused that the next run tries again: they lacked memory or time, or a glTF perhaps its other files.
+        Number of refused meshes that the next run tries again: memory or time did not suffice, or other files of a glTF may
+        have been missing.
     already
-        Meshes that an earlier run had done.
+        Number of meshes that an earlier run labelled or refused.
     """
 
     already: int = 0
@@ -62,35 +63,35 @@ def label(
     memory: int = 4 << 30,
     progress: TextIO | None = None,
 ) -> Summary:
-    """Labels all meshes that have no labels yet, or other ones than those of the mesh file as it is now; also those that
-    were refused for want of memory or time.
+    """Labels all meshes that have no labels yet or whose files have changed since, and those that were refused because memory
+    or time did not suffice.
 
-    The labels are the same bytes whoever computes them.
+    The bytes of the labels do not depend on the workers.
 
     Parameters
     ----------
     workers
         Processes of this machine, by default as many as it has cores.
     scheduler
-        The address of a Dask scheduler, whose workers are used instead. They need the package, and see the files of the
-        meshes and of the labels under the same absolute paths.
+        The address of a Dask scheduler, whose workers are used instead. They need the package, and must reach the files of the
+        meshes and of the labels by the same absolute paths.
     memory
         The address space of a worker process, in bytes: a mesh that needs more is refused.
     progress
-        Where to show how far it is.
+        The stream on which to show the progress.
 
     Raises
     ------
     ValueError
-        The folder has labels that were made with other settings, another run is writing them, there are to be no
-        workers, or ``scheduler`` is not an address.
+        The folder has labels that were made with other settings, another run is writing to it, ``workers`` is not positive, or
+        ``scheduler`` is not an address.
     OSError
         A file cannot be written, or the scheduler does not answer.
     ModuleNotFoundError
         A scheduler is given, and Dask is not installed.
     RuntimeError
-        An archive cannot be written for want of memory, though each of its meshes can be labelled; workers die before
-        they label anything; or the cluster has gone.
+        Memory does not suffice to write an archive, although each of its meshes can be labelled; workers die before they label
+        anything; or the cluster is no longer available.
     """
     of_kind("corpus", corpus, Corpus)
     worker_count = whole("workers", workers, 1) if workers is not None else os.cpu_count() or 1
@@ -130,7 +131,7 @@ def _label(corpus: Corpus, unfinished: str, run: _engines.Engine, progress: Text
 
 
 def _all_records(tasks: Sequence[Task], run: _engines.Engine) -> Generator[list[Record], None, None]:
-    """The records of all tasks. A mesh that no worker survives is found, and refused like any other."""
+    """Yields the records of all tasks. A mesh that crashes every worker is found, and refused like any other."""
     deadly: list[tuple[Task, str]] = []
     for task, result in run(tasks) if tasks else ():
         if isinstance(result, str):

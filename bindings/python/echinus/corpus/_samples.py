@@ -23,12 +23,12 @@ _LARGEST = 1e30  # of lengths: their squares are far from overflow, and float32 
 
 
 class Refused(Exception):
-    """A mesh that gets no labels; the text says why.
+    """A mesh gets no labels; the text gives the reason.
 
     Attributes
     ----------
     again : bool
-        Another attempt may succeed: the reason lies in the machine, not in the mesh.
+        Another attempt may succeed, because the reason lies in the machine, not in the mesh.
     """
 
     def __init__(self, reason: str, *, again: bool = False) -> None:
@@ -38,43 +38,43 @@ class Refused(Exception):
 
 @dataclass(frozen=True)
 class Sampling:
-    """Which samples, and in which frame.
+    """The samples to draw, and their frame.
 
     Attributes
     ----------
     uniform
-        Points in the cube of the frame: [-0.5, 0.5]^3 and half the padding on each side for ``"cube"``, [-1, 1]^3 for
-        ``"sphere"``, the bounding box for ``"none"``, enlarged likewise.
+        Number of points in the box of the frame, which is enlarged by half the padding on each side: [-0.5, 0.5]^3 for
+        ``"cube"``, and the bounding box for ``"none"``. For ``"sphere"`` it is [-1, 1]^3, without padding.
     near
-        Points of the surface, moved by normally distributed offsets; as many of them for each sigma.
+        Number of points of the surface that are moved by normally distributed offsets, in equal numbers for each sigma.
     sigmas
         Standard deviations of an offset along each axis, in the frame.
     surface
-        Points of the surface, evenly by area, with the normals of their faces.
+        Number of points of the surface, evenly distributed by area, with the normals of their faces.
     frame
         point_in_frame = (point - loc) / scale. ``"cube"``: the bounding box is centred and its longest edge is 1.
-        ``"sphere"``: it is centred and the farthest vertex has the distance 1 / 1.03, as in DeepSDF. ``"none"``: as
-        the mesh is.
+        ``"sphere"``: it is centred and the farthest vertex has the distance 1 / 1.03, as in DeepSDF. ``"none"``: the frame of
+        the mesh.
     padding
-        Of the box of uniform points, as a share of its edge; both sides together.
+        Padding of the box of uniform points, as a share of its edge; the sum of both sides.
     dtype
-        How points are stored. Labels are those of the points as stored.
+        The type in which points are stored. Labels are those of the stored points.
     distances
         Also compute signed distances and nearest points. Without them a closed mesh takes a tenth of the time.
     repair
-        Mend what can be mended without a guess, as :func:`echinus.repair` does.
+        Make the repairs that need no guess, as :func:`echinus.repair` does.
     close_holes, drop_inner_faces
-        Make meshes solid, as the arguments of :func:`echinus.repair` of these names do, in its order.
+        Make meshes solid, like the arguments of :func:`echinus.repair` with these names, in its order.
     thicken
-        Likewise: the thickness that sheets get, as a share of the longest edge of the mesh's bounding box.
+        Likewise: the thickness of the solids that replace sheets, as a share of the longest edge of the mesh's bounding box.
     min_certain
         Meshes with a smaller share of certain labels are refused.
     max_faces
         Meshes with more faces are refused.
     time_limit
-        Seconds for the labels of a mesh; it is refused where that is not enough.
+        Seconds for the labels of a mesh, which is refused if they take longer.
     seed
-        Other seeds, other samples. Besides it, samples depend on the vertices and faces only.
+        The seed of the samples, which otherwise depend only on the vertices and faces.
     """
 
     uniform: int = 50_000
@@ -122,7 +122,7 @@ class Sampling:
 
 @dataclass(frozen=True)
 class Samples:
-    """The samples of a mesh, in its frame, first the uniform ones, then those near the surface.
+    """The samples of a mesh, in its frame: first the uniform ones, then those near the surface.
 
     Attributes
     ----------
@@ -133,7 +133,8 @@ class Samples:
     nearest : ndarray (n, 3) of float32
         The nearest points of the surface; likewise.
     certain : ndarray (n) of bool
-        False where the mesh is open and its generalised winding number within 0.1 of where the side turns.
+        False where the mesh is open and its generalised winding number is within 0.1 of the threshold between inside and
+        outside.
     surface, normals : ndarray (m, 3)
         Points of the surface, and unit normals of their faces.
     loc, scale
@@ -322,7 +323,7 @@ class _Surface:
         return points, face
 
     def _find(self, share: NDArray[np.float64]) -> NDArray[np.intp]:
-        """The faces at shares of the area, from 0 to below 1: mostly that at which the share's bin begins, which takes no search."""
+        """The faces at shares of the area in [0, 1): usually the face at which the share's bin begins, which needs no search."""
         face = self._face_of_bin.take((share * self._bins).astype(np.intp))
         area = share * self._total[-1]
         beyond = np.flatnonzero(self._total.take(face) <= area)
@@ -349,7 +350,8 @@ class _Labels:
 
 
 def _labels(mesh: Mesh, points: NDArray[np.floating[Any]], closed: bool, sampling: Sampling) -> _Labels:
-    """In calls of a few seconds, so that the limit is noticed. The first is small: soups are a thousand times as slow."""
+    """Computes labels in calls of a few seconds, so that the time limit takes effect. The first call is small, since soups are a
+    thousand times as slow."""
     end = time.monotonic() + sampling.time_limit
     try:
         exact = ExactMap(mesh, threads=1)
@@ -369,7 +371,7 @@ def _labels(mesh: Mesh, points: NDArray[np.floating[Any]], closed: bool, samplin
 
 
 def _fill(labels: _Labels, part: slice, exact: ExactMap, points: NDArray[np.floating[Any]], closed: bool, distances: bool) -> None:
-    """Sides of a closed mesh take a tenth of the time of contacts, and all of them are certain."""
+    """Inside or outside of a closed mesh takes a tenth of the time of contacts, and all answers are certain."""
     if closed and not distances:
         exact.contains(points[part], out=labels.occupancy[part])
         return

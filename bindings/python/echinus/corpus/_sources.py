@@ -1,4 +1,4 @@
-"""The mesh files of a corpus: their names, and what tells that one has changed."""
+"""The mesh files of a corpus: their names, and fingerprints that reveal changes."""
 
 from __future__ import annotations
 
@@ -27,18 +27,18 @@ def find_meshes(sources: Path | Sequence[Path]) -> list[Mesh]:
     Parameters
     ----------
     sources
-        Folders, with all below them; mesh files; and lists of mesh files (``.txt``), one path a line, from the list's
-        folder. Or one of them.
+        One or several of: a folder, with all its subfolders; a mesh file; a list of mesh files (``.txt``), with one path per
+        line, relative to the list's folder.
 
     Raises
     ------
     FileNotFoundError
-        A source does not exist. A file that a list names may be missing: it is refused like a broken mesh.
+        A source does not exist. A file that a list names may be missing; it is refused like a damaged mesh.
     OSError
         A folder cannot be read.
     ValueError
-        Two files have the same name, which is their path below the source without the extension; a path is empty, or
-        a list no text in UTF-8.
+        Two files have the same name, which is the path below the source without the extension; a path is empty; or a list is
+        not text in UTF-8.
     """
     if isinstance(sources, (str, bytes, os.PathLike)):
         sources = [sources]
@@ -48,7 +48,7 @@ def find_meshes(sources: Path | Sequence[Path]) -> list[Mesh]:
 
 
 def by_name(meshes: Iterable[tuple[str, Path]]) -> list[Mesh]:
-    """Sorted, each once, and with absolute paths: workers may stand in other folders."""
+    """Sorts the meshes, drops duplicates and makes paths absolute, since workers may run in other folders."""
     path_of_name: dict[str, str] = {}
     for name, place in meshes:
         path = os.path.abspath(path_of(place))
@@ -103,7 +103,7 @@ def lies_below(name: Any) -> bool:
 
 
 def fingerprint(path: str, most: int) -> Fingerprint:
-    """Of a file larger than ``most`` bytes only its size."""
+    """The fingerprint of a file; for a file larger than ``most`` bytes it is only the size."""
     with contextlib.suppress(OSError):
         if os.path.isfile(path):
             size = os.path.getsize(path)
@@ -112,7 +112,7 @@ def fingerprint(path: str, most: int) -> Fingerprint:
 
 
 def fingerprints(paths: Sequence[str], most: int, progress: TextIO | None = None) -> Iterator[Fingerprint]:
-    """On all cores: for a file this takes about a hundredth of the time of its labels."""
+    """The fingerprints of files, on all cores; for a file this takes about a hundredth of the time of its labels."""
 
     def computed() -> Iterator[Fingerprint]:
         with ThreadPoolExecutor(os.cpu_count()) as pool:

@@ -27,14 +27,14 @@ class Task:
     Attributes
     ----------
     meshes
-        (name, path) of each.
+        The name and path of each mesh.
     unfinished
-        The folder of files that are being written, which the run makes and removes: then no worker that still computes
-        for it can finish a file.
+        The folder of files that are being written. The run creates and removes it, so that afterwards no worker that still
+        computes can finish a file.
     archive
-        The archive that they become, or None: files of their own.
+        The archive that contains their files, or None if the files are separate.
     refused
-        Name and reason of meshes that are not to be tried, because workers died of them.
+        The name of each mesh that is not tried because it crashed workers, and the reason for its refusal.
     """
 
     meshes: tuple[tuple[str, str], ...]
@@ -47,7 +47,7 @@ class Task:
     refused: tuple[tuple[str, str], ...] = ()
 
     def alone(self) -> list[Task]:
-        """A task for each mesh, which writes nothing that stays: to find the one that workers die of."""
+        """One task for each mesh, which leaves no files, to find the mesh that crashes workers."""
         return [replace(self, meshes=(mesh,), archive=None, output=self.place_alone) for mesh in self.meshes]
 
     @property
@@ -56,12 +56,12 @@ class Task:
 
 
 def run(task: Task) -> list[Record]:
-    """Labels the meshes and writes their files, each whole or not at all; the same task gives the same records."""
+    """Labels the meshes and writes their files, each completely or not at all; the same task gives the same records."""
     reasons = dict(task.refused)
     records: list[Record] = []
     members: dict[str, bytes] = {}
     for name, path in task.meshes:
-        # Before the mesh is read: where the file changes meanwhile, the next run sees it.
+        # Before the mesh is read: if the file changes meanwhile, the next run sees it.
         size, digest = fingerprint(path, task.max_bytes)
         source = {"mesh": name, "source": path, "source_bytes": size, "source_sha256": digest}
         try:
@@ -86,7 +86,7 @@ def run(task: Task) -> list[Record]:
 
 
 def _refusal(error: Refused | Error | MemoryError, path: str) -> Record:
-    """The next run tries meshes again whose own file is not to blame, as far as that is known."""
+    """The next run tries a mesh again if, as far as is known, its own file is not the cause."""
     if isinstance(error, MemoryError):
         error = Refused("it needs more memory than a worker has", again=True)
     again = isinstance(error, Refused) and error.again or path.lower().endswith(".gltf")  # its other files may have been missing
@@ -110,7 +110,7 @@ def _write(task: Task, name: str, content: bytes) -> Record:
 
 @contextlib.contextmanager
 def whole_file(target: pathlib.Path, unfinished: str) -> Iterator[BinaryIO]:
-    """A file that is in the second folder, under another name, until it is whole. Errors of the system name it."""
+    """A file that is in the folder ``unfinished``, under another name, until it is complete. Errors of the system name it."""
     with naming(target):
         target.parent.mkdir(parents=True, exist_ok=True)
         part = os.path.join(unfinished, secrets.token_hex(8))
@@ -128,7 +128,7 @@ def whole_file(target: pathlib.Path, unfinished: str) -> Iterator[BinaryIO]:
 
 @contextlib.contextmanager
 def naming(path: pathlib.Path) -> Iterator[None]:
-    """A full disk has no name of its own."""
+    """Adds the path to an error of the system, since that of a full disk names no file."""
     try:
         yield
     except OSError as error:

@@ -20,16 +20,16 @@ from echinus.corpus._tasks import Record
 
 @dataclass(frozen=True)
 class Findings:
-    """How much there is of the labels of a corpus.
+    """The result of the verification of a corpus.
 
     Attributes
     ----------
     complaints
-        The fault of its labels.
+        The faults of its labels.
     surplus
-        Files that belong to no mesh with labels, for instance because their mesh was taken out of the corpus.
+        Files that belong to no labelled mesh, for instance because their mesh was removed from the corpus.
     refused, again
-        Meshes without labels, and those of them that the next run tries again.
+        Numbers of meshes without labels, and of those that the next run tries again.
     """
 
     complaints: list[str]
@@ -96,7 +96,7 @@ def _of_other_meshes(corpus: Corpus, records: Iterable[Record], progress: TextIO
 
 
 def _misplaced(records: Iterable[Record], archive_of: dict[str, str | None]) -> Iterator[str]:
-    """Archives as they were before meshes came into the corpus or went."""
+    """Archives from before meshes were added to the corpus or removed from it."""
     archives = {archive for archive in archive_of.values() if archive is not None}
     for record in (record for record in records if "mesh" in record):
         for file in record.get("files", []):
