@@ -4,7 +4,6 @@
 /// rendering (echinus_render/render.hpp) are separate libraries with separate headers.
 
 #include <echinus/any_map.hpp>
-#include <echinus/check.hpp>
 #include <echinus/collider.hpp>
 #include <echinus/contact.hpp>
 #include <echinus/custom_map.hpp>

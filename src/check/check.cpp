@@ -3,9 +3,9 @@
 #include "geometry/whole_numbers.hpp"
 #include "mesh/require_valid.hpp"
 
-#include <echinus/check.hpp>
 #include <echinus/error.hpp>
 #include <echinus/exact_map.hpp>
+#include <echinus/intersections.hpp>
 
 #include <algorithm>
 #include <cstddef>
@@ -90,9 +90,12 @@ class DeepestVertex {
 /// The meshes with what is computed once for each.
 class Meshes {
   public:
-    Meshes(std::span<const TriangleMesh> meshes, unsigned thread_count)
-        : meshes_(meshes), thread_count_(thread_count), boxes_(meshes.size()), is_mapped_(meshes.size()),
-          maps_(meshes.size()) {
+    Meshes(std::span<const TriangleMesh> meshes, const CheckOptions& options)
+        : meshes_(meshes), names_(options.names), thread_count_(options.thread_count), boxes_(meshes.size()),
+          is_mapped_(meshes.size()), maps_(meshes.size()) {
+        if (!names_.empty() && names_.size() != meshes.size())
+            throw Error(ErrorCode::InvalidOptions, std::to_string(names_.size()) + " names for " +
+                                                       std::to_string(meshes.size()) + " meshes");
         for (std::size_t i = 0; i < meshes.size(); ++i) {
             require_valid(i);
             for (const Triangle& face : meshes[i].faces)
@@ -110,14 +113,16 @@ class Meshes {
             else if (boxes_[a].overlaps(boxes_[b]))
                 check_two(pair);
         } catch (const Error& error) {
-            const std::string first = std::to_string(a), second = std::to_string(b);
-            throw Error(error.code(), (a == b ? "mesh " + first : "meshes " + first + " and " + second) +
-                                          ": " + error.what());
+            throw Error(error.code(), (a == b ? name(a) : name(a) + " and " + name(b)) + ": " + error.what());
         }
         return pair;
     }
 
   private:
+    std::string name(std::size_t mesh) const {
+        return names_.empty() ? "mesh " + std::to_string(mesh) : names_[mesh];
+    }
+
     void require_valid(std::size_t mesh) const {
         try {
             echinus::require_valid(meshes_[mesh]);
@@ -125,7 +130,7 @@ class Meshes {
                 throw Error(ErrorCode::InvalidMesh, "the origin is not that of the first mesh; move the "
                                                     "vertices to its frame first");
         } catch (const Error& error) {
-            throw Error(error.code(), "mesh " + std::to_string(mesh) + ": " + error.what());
+            throw Error(error.code(), name(mesh) + ": " + error.what());
         }
     }
 
@@ -169,6 +174,7 @@ class Meshes {
     }
 
     std::span<const TriangleMesh> meshes_;
+    const std::vector<std::string>& names_;
     unsigned thread_count_;
     std::vector<AlignedBox<float>> boxes_;
     std::vector<bool> is_mapped_; ///< or was found to have no map
@@ -179,7 +185,7 @@ class Meshes {
 
 std::vector<CheckedMeshes> check(std::span<const TriangleMesh> meshes, const CheckOptions& options) {
     const auto count = kept_as<std::uint32_t>(meshes.size());
-    Meshes checked(meshes, options.thread_count);
+    Meshes checked(meshes, options);
     std::vector<CheckedMeshes> found;
     const double total = 0.5 * count * (count + 1.0);
     double done = 0;

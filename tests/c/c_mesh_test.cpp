@@ -2,7 +2,6 @@
 #include "support/random_points.hpp"
 #include "support/temporary_folder.hpp"
 
-#include <echinus/check.hpp>
 #include <echinus/exact_map.hpp>
 #include <echinus/intersections.hpp>
 #include <echinus/mesh.hpp>

@@ -1,8 +1,8 @@
 #include "support/expectations.hpp"
 #include "support/meshes.hpp"
 
-#include <echinus/check.hpp>
 #include <echinus/exact_map.hpp>
+#include <echinus/intersections.hpp>
 
 #include <gtest/gtest.h>
 
@@ -105,6 +105,12 @@ TEST(Check, NamesTheMeshThatIsNotValid) {
         check(std::vector{box, {}});
     });
     expect_error(ErrorCode::InvalidMesh, "mesh 1: the origin", [&] { check(std::vector{box, elsewhere}); });
+    expect_error(ErrorCode::InvalidMesh, "dress.obj: face 3", [&] {
+        check(std::vector{box, no_vertex}, {.names = {"body.obj", "dress.obj"}});
+    });
+    expect_error(ErrorCode::InvalidOptions, "1 names for 2 meshes", [&] {
+        check(std::vector{box, box}, {.names = {"body.obj"}});
+    });
     EXPECT_TRUE(check({}).empty());
 }
 

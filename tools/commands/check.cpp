@@ -6,11 +6,10 @@
 #include "output.hpp"
 #include "run_program.hpp"
 
-#include <echinus/check.hpp>
+#include <echinus/intersections.hpp>
 #include <echinus/mesh_io.hpp>
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
@@ -231,10 +230,9 @@ void run(const CheckArguments& arguments) {
     std::vector<CheckedMeshes> found;
     {
         ProgressBar bar("checking");
-        found = naming_mesh(fmt::format("{}", fmt::join(input.names, ", ")), [&] {
-            return check(input.meshes, {.thread_count = arguments.thread_count,
-                                        .progress = [&bar](double share) { bar(share); }});
-        });
+        found = check(input.meshes, {.names = input.names,
+                                     .thread_count = arguments.thread_count,
+                                     .progress = [&bar](double share) { bar(share); }});
     }
     if (!arguments.target.empty()) write_painting(arguments.target, input, found);
     if (arguments.json)

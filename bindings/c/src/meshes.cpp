@@ -2,7 +2,6 @@
 #include "handles.hpp"
 #include "options.hpp"
 
-#include <echinus/check.hpp>
 #include <echinus/intersections.hpp>
 #include <echinus/mesh_io.hpp>
 

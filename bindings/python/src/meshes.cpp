@@ -3,7 +3,6 @@
 #include "options.hpp"
 #include "values.hpp"
 
-#include <echinus/check.hpp>
 #include <echinus/intersections.hpp>
 #include <echinus/mesh_io.hpp>
 

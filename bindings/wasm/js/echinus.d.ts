@@ -98,7 +98,7 @@ export class Echinus {
     makeBox(size: Vec3, segments?: number): Mesh;
     /**
      * Finds which meshes intersect each other or themselves, and those of which one has a vertex inside
-     * another (echinus/check.hpp). All must lie in one frame. Mesh.intersections() has the curves.
+     * another (echinus/intersections.hpp). All must lie in one frame. Mesh.intersections() has the curves.
      */
     check(meshes: readonly Mesh[]): CheckedMeshes[];
 
