@@ -15,9 +15,9 @@
 
 ECHINUS_EXPORT_BEGIN
 
-/// Exact tests for intersecting faces, for instance to verify the results of a simulation. They decide
-/// exactly on the float coordinates, without rounding or tolerances. The answers are the same on every
-/// machine.
+/// Exact tests for intersecting faces, for instance to verify the results of a simulation, or a garment and
+/// its body before one. They decide exactly on the float coordinates, without rounding or tolerances. The
+/// answers are the same on every machine.
 namespace echinus {
 
 /// Do two closed triangles have a common point? Touching counts. Corners may coincide or lie on a line; the
@@ -105,17 +105,17 @@ struct CheckedMeshes {
 };
 
 struct CheckOptions {
-    /// Of the meshes, for the sentences of errors: for instance those of their files. Empty: "mesh 0" and so
-    /// on
+    /// The names of the meshes in errors, for instance those of their files. If it is empty, they are "mesh
+    /// 0" and so on.
     std::vector<std::string> names = {};
     unsigned thread_count = 0; ///< for the depths; 0: all cores. The results do not depend on it
     /// Called with the share of the work that is done, 0 to 1, in the thread that called check().
     std::function<void(double share)> progress = nullptr;
 };
 
-/// Checks every mesh and every two of the meshes. The meshes must lie in one frame. Which faces intersect is
-/// decided exactly, inside and depth by an exact map of each closed mesh (exact_map.hpp),
-/// as accurately as its queries. A mesh may lie inside another without intersecting it.
+/// Checks every mesh and every pair of meshes, which must all lie in one frame. Intersections of faces are
+/// decided exactly; inside and depth are as accurate as the queries of an exact map (exact_map.hpp), which is
+/// built of each closed mesh. A mesh may lie inside another without intersecting it.
 /// @returns the meshes that intersect, and those of which one has a vertex inside the other, in ascending
 /// order
 /// @throws Error InvalidMesh as intersections() and self_intersections() do; the sentence begins with the

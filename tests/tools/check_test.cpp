@@ -131,6 +131,13 @@ TEST_F(CheckCommand, NamesTheFileThatItCannotUse) {
     expect_failure(2, "box.ply: is an input file", {"check", "body.obj", "box.ply", "--pairs", "box.ply"});
 }
 
+TEST_F(CheckCommand, NamesTheFileWhoseFacesAllLieOnEachOther) {
+    std::string text;
+    for (int i = 0; i < 8200; ++i) text += "v 0 0 0\nv 1 0 0\nv 0 1 0\nf -3 -2 -1\n";
+    write("same.obj", text);
+    expect_failure(1, "same.obj: more than 33554432 pairs", {"check", "hat.obj", "same.obj"});
+}
+
 TEST_F(CheckCommand, TakesMeshesOnEachOtherAndEdgesWithManyFaces) {
     const json copies = json::parse(expect_success({"check", "hat.obj", "hat.obj", "--json"}));
     EXPECT_GT(copies["between"][0]["pairs"], 12);
