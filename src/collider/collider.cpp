@@ -156,7 +156,7 @@ Contact contact(const Collider& collider, Vec3f point_world, float margin_world)
 void contains_batch(const Collider& collider, StridedSpan<const Vec3f> points_world,
                     std::span<std::uint8_t> inside, unsigned thread_count) noexcept {
     if (!is_met(points_world.size() == inside.size(),
-                "contains_batch: there are not as many inside as points"))
+                "contains_batch: the number of answers differs from the number of points"))
         return;
     const FrameChange frame(collider);
     for_each_piece(inside.size(), thread_count, [&](std::size_t first, std::size_t end) {
@@ -172,7 +172,7 @@ void contains_batch(const Collider& collider, StridedSpan<const Vec3f> points_wo
 void contacts_batch(const Collider& collider, StridedSpan<const Vec3f> points_world, float margin_world,
                     std::span<Contact> contacts, unsigned thread_count) noexcept {
     if (!is_met(points_world.size() == contacts.size(),
-                "contacts_batch: there are not as many contacts as points"))
+                "contacts_batch: the number of contacts differs from the number of points"))
         return;
     const FrameChange frame(collider);
     for_each_piece(contacts.size(), thread_count, [&](std::size_t first, std::size_t end) {

@@ -131,7 +131,8 @@ Embedding embed(const TetrahedralMesh& mesh, StridedSpan<const Vec3f> points, un
 
 void carry(const Embedding& embedding, StridedSpan<const Vec3f> positions, StridedSpan<Vec3f> points,
            unsigned thread_count) noexcept {
-    if (!is_met(points.size() == embedding.size(), "carry: there are not as many points as were embedded"))
+    if (!is_met(points.size() == embedding.size(),
+                "carry: the number of points differs from the number that was embedded"))
         return;
     for_each_piece(embedding.size(), thread_count, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {

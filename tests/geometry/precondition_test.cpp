@@ -46,11 +46,11 @@ TEST(Precondition, CallsTheHandlerAndLeavesTheOutputAsItWasWhereSizesDiffer) {
     const std::vector<Vec3f> points(3);
     std::array<std::uint8_t, 2> inside{7, 7};
     contains_batch(map, points, inside);
-    EXPECT_EQ(last_violation, "contains_batch: there are not as many inside as points");
+    EXPECT_EQ(last_violation, "contains_batch: the number of answers differs from the number of points");
     EXPECT_EQ(inside[0], 7);
     std::array<Containment, 4> answers;
     classify_batch(map, points, answers);
-    EXPECT_EQ(last_violation, "classify_batch: there are not as many answers as points");
+    EXPECT_EQ(last_violation, "classify_batch: the number of answers differs from the number of points");
     contains_batch(Collider{.map = map}, points, inside);
     EXPECT_EQ(inside[1], 7);
 }

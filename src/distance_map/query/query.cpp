@@ -204,7 +204,7 @@ Contact contact(const DistanceMapView& map, Vec3f point_local, float margin) noe
 void contains_batch(const DistanceMapView& map, StridedSpan<const Vec3f> points_local,
                     std::span<std::uint8_t> inside, unsigned thread_count) noexcept {
     if (!is_met(points_local.size() == inside.size(),
-                "contains_batch: there are not as many inside as points"))
+                "contains_batch: the number of answers differs from the number of points"))
         return;
     const bool by_kernel = use_kernels() && kernels_read(map);
     for_each_piece(inside.size(), thread_count, [&](std::size_t begin, std::size_t end) {
@@ -218,7 +218,7 @@ void contains_batch(const DistanceMapView& map, StridedSpan<const Vec3f> points_
 void contacts_batch(const DistanceMapView& map, StridedSpan<const Vec3f> points_local, float margin,
                     std::span<Contact> contacts, unsigned thread_count) noexcept {
     if (!is_met(points_local.size() == contacts.size(),
-                "contacts_batch: there are not as many contacts as points"))
+                "contacts_batch: the number of contacts differs from the number of points"))
         return;
     const bool by_kernel = use_kernels() && kernels_read(map);
     for_each_piece(contacts.size(), thread_count, [&](std::size_t begin, std::size_t end) {

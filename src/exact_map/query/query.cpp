@@ -56,7 +56,7 @@ Contact stretched_contact(const ExactMapView& map, const Vec3f& point_local, flo
 void contains_batch(const ExactMapView& map, StridedSpan<const Vec3f> points_local,
                     std::span<std::uint8_t> inside, unsigned thread_count) noexcept {
     if (!is_met(points_local.size() == inside.size(),
-                "contains_batch: there are not as many inside as points"))
+                "contains_batch: the number of answers differs from the number of points"))
         return;
     for_each_piece(inside.size(), thread_count, [&](std::size_t begin, std::size_t end) {
         const std::span<Side> sides = inside.subspan(begin, end - begin);
@@ -69,7 +69,7 @@ void contains_batch(const ExactMapView& map, StridedSpan<const Vec3f> points_loc
 void classify_batch(const ExactMapView& map, StridedSpan<const Vec3f> points_local,
                     std::span<Containment> answers, unsigned thread_count) noexcept {
     if (!is_met(points_local.size() == answers.size(),
-                "classify_batch: there are not as many answers as points"))
+                "classify_batch: the number of answers differs from the number of points"))
         return;
     answer_each(answers, thread_count, [&](std::size_t i) { return classify(map, points_local[i]); });
 }
@@ -83,7 +83,7 @@ void stretched_contacts_batch(const ExactMapView& map, const StridedSpan<const V
                               float margin, std::span<Contact> contacts, const Vec3d& stretch,
                               unsigned thread_count) noexcept {
     if (!is_met(points_local.size() == contacts.size(),
-                "contacts_batch: there are not as many contacts as points"))
+                "contacts_batch: the number of contacts differs from the number of points"))
         return;
     const ContactSearch search(map, stretch, margin);
     for_each_piece(contacts.size(), thread_count, [&](std::size_t begin, std::size_t end) {
@@ -116,7 +116,7 @@ float winding_number(const ExactMapView& map, Vec3f point_local, float tolerance
 void winding_number_batch(const ExactMapView& map, StridedSpan<const Vec3f> points_local,
                           std::span<float> windings, float tolerance, unsigned thread_count) noexcept {
     if (!is_met(points_local.size() == windings.size(),
-                "winding_number_batch: there are not as many windings as points"))
+                "winding_number_batch: the number of winding numbers differs from the number of points"))
         return;
     answer_each(windings, thread_count,
                 [&](std::size_t i) { return winding_number(map, points_local[i], tolerance); });
@@ -132,10 +132,10 @@ void signed_distance_batch(const ExactMapView& map, StridedSpan<const Vec3f> poi
                            std::span<float> distances, std::span<Vec3f> gradients,
                            unsigned thread_count) noexcept {
     if (!is_met(points_local.size() == distances.size(),
-                "signed_distance_batch: there are not as many distances as points"))
+                "signed_distance_batch: the number of distances differs from the number of points"))
         return;
     if (!is_met(gradients.empty() || gradients.size() == distances.size(),
-                "signed_distance_batch: there are not as many gradients as points"))
+                "signed_distance_batch: the number of gradients differs from the number of points"))
         return;
     const ContactSearch search = search_everywhere(map);
     for_each_piece(distances.size(), thread_count, [&](std::size_t begin, std::size_t end) {

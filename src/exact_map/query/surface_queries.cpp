@@ -359,7 +359,7 @@ TriangleSweepHit sweep(const ExactMapView& map, const TrianglePoints& from_local
 void intersects_batch(const ExactMapView& map, StridedSpan<const TrianglePoints> triangles_local,
                       std::span<std::uint8_t> intersecting, unsigned thread_count) noexcept {
     if (!is_met(triangles_local.size() == intersecting.size(),
-                "intersects_batch: there are not as many answers as triangles"))
+                "intersects_batch: the number of answers differs from the number of triangles"))
         return;
     answer_each(intersecting, thread_count, [&](std::size_t i) {
         return intersects(map, triangles_local[i]) ? std::uint8_t{1} : std::uint8_t{0};
@@ -369,7 +369,7 @@ void intersects_batch(const ExactMapView& map, StridedSpan<const TrianglePoints>
 void clearance_batch(const ExactMapView& map, StridedSpan<const TrianglePoints> triangles_local,
                      float farthest, std::span<Clearance> clearances, unsigned thread_count) noexcept {
     if (!is_met(triangles_local.size() == clearances.size(),
-                "clearance_batch: there are not as many clearances as triangles"))
+                "clearance_batch: the number of clearances differs from the number of triangles"))
         return;
     answer_each(clearances, thread_count,
                 [&](std::size_t i) { return clearance(map, triangles_local[i], farthest); });
