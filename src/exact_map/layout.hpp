@@ -12,45 +12,45 @@
 #include <span>
 #include <vector>
 
-/// Constants and conversions for an exact map's arrays that the build and the queries share.
+/// Constants and conversions for the arrays of an exact map, for builds and queries.
 namespace echinus {
 
-// Cells are numbered in 32 bits, with a sign in vectors, and so are the products that number them.
+// Cells are numbered in 32 bits, and in signed lanes of vectors; so are the products from which the numbers
+// are computed.
 static_assert(8 * std::uint64_t{ExactMapOptions::kMaxDivisions} * ExactMapOptions::kMaxDivisions < 1U << 31);
 
-/// The far field of the triangles below each child of the TreeNode with the same index: moments of their area
-/// vectors about a centre, for the winding number of an open surface, in lattice steps, divided by 4 pi. For
-/// a child that does not exist everything except the centre is 0. exact_map/build/open_surface.hpp
-/// explains the moments.
+/// The far field of the triangles below each child of the TreeNode with the same index: the moments of their
+/// area vectors about a centre, in lattice steps and divided by 4 pi. They give the winding number of an open
+/// surface. For a child that does not exist, everything except the centre is 0.
+/// exact_map/build/open_surface.hpp explains the moments.
 struct WindingNode {
     static constexpr std::size_t kWidth = TreeNode::kWidth;
 
     double centre[3][kWidth];
     double area[3][kWidth];    ///< sum of the area vectors
     double first[6][kWidth];   ///< coefficients of x^2, y^2, z^2, xy, xz, yz
-    double second[7][kWidth];  ///< of x (x^2 - 3 z^2), y (y^2 - 3 z^2), ... see open_surface.cpp
+    double second[7][kWidth];  ///< coefficients of x (x^2 - 3 z^2), y (y^2 - 3 z^2), ... see open_surface.cpp
     double radius[kWidth];     ///< largest distance of a corner from the centre
     double spread[kWidth];     ///< integral of the squared distance from the centre
     double total_area[kWidth]; ///< sum of the areas
 };
 static_assert(sizeof(WindingNode) == 22 * 8 * sizeof(double));
 
-/// Triangles in a tree, for the sum of the solid angles that they subtend at a point: the triangles over
-/// which queries of an open surface sum. They are its faces, or caps that close it if these are far fewer
-/// (exact_map/query/winding.cpp).
+/// A tree of the triangles whose solid angles a query of an open surface sums. They are the faces of the
+/// surface, or caps that close it if these are far fewer (exact_map/query/winding.cpp).
 struct WindingTree {
     std::span<const TreeNode> nodes;
     std::span<const WindingNode> moments; ///< [nodes.size()]
     IndexArray corners; ///< [3 triangle_count] vertices of each triangle, in the order of the leaves
     bool has_caps = false;
-    /// At each border edge two more faces run in one direction than in the other, as where neighbours
+    /// At each border edge, two more faces run in one direction than in the other, as happens if neighbours
     /// disagree about the outside: the surface has no hole.
     bool neighbours_disagree = false;
 
     std::size_t triangle_count() const { return corners.size() / 3; }
 };
 
-/// Lattice steps of the L1 norm to the units of Band, rounded down.
+/// Converts an L1 norm in lattice steps to the units of Band, rounding down.
 inline std::int64_t band_unit_of(std::int64_t l1) {
     return l1 / ExactMapView::kBandUnit;
 }
@@ -66,7 +66,7 @@ inline std::array<LatticePoint, 3> face_corners(const ExactMapView& map, std::ui
     return {corner(0), corner(1), corner(2)};
 }
 
-/// The bands of a cell, as numbers of ExactMapView::bands.
+/// The bands of a cell, as indices into ExactMapView::bands.
 struct BandRange {
     std::uint32_t first, last; ///< half open
 };
@@ -85,7 +85,7 @@ inline void set_outer_limits(std::span<const std::uint32_t> band_offsets, std::s
     }
 }
 
-/// Winding number of the gap beyond a band of a cell, or kUncertain.
+/// The winding number of the gap beyond a band of a cell, or kUncertain.
 inline int winding_beyond(const ExactMapView& map, std::uint32_t band, const BandRange& bands) {
     return band + 1 < bands.last ? map.winding_below[band + 1] : 0;
 }
@@ -94,15 +94,16 @@ inline bool is_inside(InsideRule rule, std::int64_t winding) {
     return rule == InsideRule::Nonzero ? winding != 0 : winding % 2 != 0;
 }
 
-/// Checks everything that keeps queries harmless, and what else one pass can check: bands, faces and tree
-/// agree in their numbers, no integer of a query overflows, the tree is a tree and no deeper than a query's
-/// stack, its boxes contain their faces. It does not check that the bands match the faces; where they do not,
-/// answers are wrong. Takes at most some 2 % of the instructions of a build.
+/// Checks everything that queries rely on for safety, and whatever else can be checked in one pass: that the
+/// sizes of bands, faces and tree agree, that no integer of a query overflows, that the tree is a tree and no
+/// deeper than a query's stack, and that its boxes contain their faces. It does not check that the bands
+/// match the faces; if they do not, answers are wrong. Takes at most about 2 % of the instructions of a
+/// build.
 /// @throws Error Damaged
 void validate(const Checker& checker, const ExactMapView& map, const ExactMapStatistics& statistics);
 
 /// The last step of a build.
-/// @throws Error Damaged where the map contradicts itself, through a fault of this library
+/// @throws Error Damaged if the map contradicts itself, which is a fault of this library
 ExactMap proven(const ExactMapView& map, const ExactMapStatistics& statistics, std::uint64_t source_hash,
                 std::shared_ptr<const void> storage);
 

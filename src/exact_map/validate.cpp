@@ -17,7 +17,7 @@ namespace {
 constexpr auto kExtent = static_cast<std::int32_t>(kLatticeExtent);
 
 void check_scalars(const Checker& checker, const ExactMapView& map) {
-    // The bounds of a build; a searched centre may double the radius.
+    // A build keeps to [1e-15, 1e15]; a searched centre may double the radius.
     constexpr float kSmallest = 1e-15F, kLargest = 4e15F;
     if (!is_finite(map.centre)) checker.fail("centre is not finite");
     if (!(map.radius >= kSmallest && map.radius <= kLargest))
@@ -26,12 +26,12 @@ void check_scalars(const Checker& checker, const ExactMapView& map) {
     checker.check_enumerator("inside_rule", map.rule, InsideRule::Parity);
 }
 
-/// @param end  every index is smaller
+/// @param end  must be greater than every index
 template <typename Index>
 void check_indices(const Checker& checker, const std::string& array, std::span<const Index> indices,
                    std::size_t end) {
     if (indices.empty() || end > std::numeric_limits<Index>::max()) return;
-    Index largest = 0; // without a branch, for the compiler to make vectors of it
+    Index largest = 0; // no branch, so that the compiler vectorises the loop
     for (const Index index : indices) largest = std::max(largest, index);
     if (largest < end) return;
     const auto beyond =
@@ -40,7 +40,7 @@ void check_indices(const Checker& checker, const std::string& array, std::span<c
                  "is " + std::to_string(*beyond) + " and not below " + std::to_string(end));
 }
 
-/// @param name  name of the two arrays, without their width
+/// @param name  name of the two arrays, without the suffix that states their width
 void check_indices(const Checker& checker, const std::string& name, const IndexArray& indices,
                    std::size_t end) {
     if (!indices.narrow.empty() && !indices.wide.empty())
@@ -71,7 +71,7 @@ void check_mesh(const Checker& checker, const ExactMapView& map) {
 }
 
 void check_first_references(const Checker& checker, std::span<const Band> bands) {
-    bool ascend = bands[0].first_reference == 0; // without a branch, as nearly all do
+    bool ascend = bands[0].first_reference == 0; // no branch, as it fails for hardly any map
     for (std::size_t i = 1; i < bands.size(); ++i)
         ascend &= bands[i].first_reference >= bands[i - 1].first_reference;
     if (ascend) return;
@@ -96,7 +96,7 @@ void check_bands(const Checker& checker, const ExactMapView& map) {
     checker.check_size("references", map.references.size(), map.bands.back().first_reference);
     for (std::size_t cell = 0; cell < map.cell_count(); ++cell) {
         std::uint16_t least = 0;
-        bool may_be_upper_half = false; // a lower half comes before it, and meets it
+        bool may_be_upper_half = false; // a lower half comes before the upper one and touches it
         for (std::uint32_t i = map.band_offsets[cell]; i < map.band_offsets[cell + 1]; ++i) {
             const bool is_upper_half = map.winding_below[i] == ExactMapView::kSplit;
             if (is_upper_half && !(may_be_upper_half && map.bands[i].lower == least))
@@ -116,7 +116,7 @@ void check_bands(const Checker& checker, const ExactMapView& map) {
 }
 
 /// Walks the tree from the root: every node and every leaf is reached exactly once.
-/// @tparam Vertex  of which the corners of faces are
+/// @tparam Vertex  the type of the corners' vertex numbers
 template <typename Vertex>
 class TreeCheck {
   public:
@@ -125,7 +125,7 @@ class TreeCheck {
           leaf_count_((map.face_count() + kWidth - 1) / kWidth), depths_(map.nodes.size()),
           is_leaf_met_(leaf_count_) {}
 
-    /// @returns  how many faces have two corners on one place
+    /// @returns  how many faces have two corners on one lattice point
     std::uint32_t run() {
         if (map_.nodes.empty()) checker_.fail("nodes has no elements");
         depths_[0] = 1;
@@ -181,8 +181,8 @@ class TreeCheck {
         load(first, count);
         const Range x = range(n, 0, k), y = range(n, 1, k), z = range(n, 2, k);
         const auto& [a, b, c] = places_;
-        std::int32_t outside = 0; // negative where a corner lies below or above the box
-        std::int32_t equal = 0;   // not 0 where two corners agree along x
+        std::int32_t outside = 0; // negative if a corner lies below or above the box
+        std::int32_t equal = 0;   // not 0 if two corners agree along x
         for (std::size_t lane = 0; lane < kWidth; ++lane) {
             outside |= x.signs(a[0][lane]) | x.signs(b[0][lane]) | x.signs(c[0][lane]);
             outside |= y.signs(a[1][lane]) | y.signs(b[1][lane]) | y.signs(c[1][lane]);
@@ -199,22 +199,22 @@ class TreeCheck {
     struct Range {
         std::int32_t low, high;
 
-        /// Negative where a number is not in the range.
+        /// Negative if the value is out of range.
         std::int32_t signs(std::int32_t value) const { return (value - low) | (high - value); }
     };
     static Range range(const TreeNode& node, std::size_t axis, std::size_t k) {
         return {node.low[axis][k] * ExactMapView::kBoxUnit, node.high[axis][k] * ExactMapView::kBoxUnit};
     }
 
-    /// A number for each face of a leaf, which the compiler turns into vectors.
+    /// A number for each face of a leaf, in a loop over which the compiler vectorises.
     using Lanes = std::array<std::int32_t, kWidth>;
-    using Corners = std::array<Lanes, 3>; ///< one of each face, by axis
+    using Corners = std::array<Lanes, 3>; ///< one corner of each face, by axis
 
     static bool meet(const Corners& a, const Corners& b, std::size_t lane) {
         return a[0][lane] == b[0][lane] && a[1][lane] == b[1][lane] && a[2][lane] == b[2][lane];
     }
 
-    /// The corners of a leaf's faces; the last face counts again for those that it lacks.
+    /// Loads the corners of a leaf's faces. If the leaf is not full, its last face takes the remaining lanes.
     void load(std::size_t first, std::size_t count) {
         for (std::size_t lane = 0; lane < kWidth; ++lane) {
             const Vertex* corners = &corners_[3 * (first + std::min(lane, count - 1))];
@@ -233,15 +233,15 @@ class TreeCheck {
 
     const Checker& checker_;
     const ExactMapView& map_;
-    std::span<const Vertex> corners_; ///< of all faces
+    std::span<const Vertex> corners_; ///< the corners of all faces
     std::size_t leaf_count_;
     std::uint32_t collapsed_count_ = 0;
-    std::array<Corners, 3> places_;    ///< of the leaf at hand
+    std::array<Corners, 3> places_;    ///< the corners of the current leaf's faces
     std::vector<std::uint8_t> depths_; ///< [node_count] 1 for the root; 0: not visited yet
     std::vector<bool> is_leaf_met_;
 };
 
-/// @returns  how many faces have two corners on one place
+/// @returns  how many faces have two corners on one lattice point
 std::uint32_t check_tree(const Checker& checker, const ExactMapView& map) {
     return map.corners.wide.empty() ? TreeCheck(checker, map, map.corners.narrow).run()
                                     : TreeCheck(checker, map, map.corners.wide).run();
@@ -249,7 +249,7 @@ std::uint32_t check_tree(const Checker& checker, const ExactMapView& map) {
 
 void check_statistics(const Checker& checker, const ExactMapView& map, const ExactMapStatistics& statistics,
                       std::uint32_t collapsed_count) {
-    constexpr std::size_t kMostFaces = std::size_t{1} << 31; // answers name a face by an int32
+    constexpr std::size_t kMostFaces = std::size_t{1} << 31; // results name a face by an int32
     check_indices(checker, "face_numbers", map.face_numbers,
                   std::min<std::size_t>(statistics.face_count, kMostFaces));
     checker.check_equal("face_count", statistics.face_count, map.face_count());

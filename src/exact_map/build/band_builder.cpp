@@ -43,7 +43,8 @@ void BandList::clear() {
 }
 
 void BandList::make_room(std::size_t interval_count, std::size_t cell_count) {
-    const std::size_t reference_count = interval_count + interval_count / 2; // some are listed twice
+    const std::size_t reference_count =
+        interval_count + interval_count / 2; // some references are listed twice
     const std::size_t band_count = 4 * cell_count;
     band_counts.room_for(cell_count);
     bands.room_for(band_count);
@@ -60,8 +61,9 @@ std::span<const Interval> IntervalSorter::sorted(std::span<Interval> intervals) 
     return intervals;
 }
 
-/// Sorts by counting how many come before each. Compares all pairs, but without a branch that a processor
-/// could mispredict: for most lists, which are short, that is faster than sorting.
+/// Sorts by counting, for each interval, how many come before it. This compares all pairs, but without a
+/// branch that a processor could mispredict; for short lists, which most are, it is faster than other sorting
+/// methods.
 std::span<const Interval> IntervalSorter::ranked(std::span<const Interval> intervals) {
     std::array<std::uint32_t, kFew> rank;
     for (std::size_t i = 0; i < intervals.size(); ++i) {
@@ -88,7 +90,7 @@ void BandBuilder::add_cell(std::uint32_t cell, std::span<Interval> intervals) {
     result_.band_counts.push_back(kept_as<std::uint32_t>(result_.bands.size() - band_count));
 }
 
-/// Merges intervals that overlap or touch, and counts what the middle ray crosses.
+/// Merges intervals that overlap or touch, and counts the crossings of the middle ray.
 void BandBuilder::merge(std::span<const Interval> rest) {
     merged_.clear();
     while (!rest.empty()) {
@@ -111,8 +113,8 @@ void BandBuilder::append(const MergedBand& band, std::int16_t winding_below) {
     append_references(band.intervals, [](const Interval&) { return true; });
 }
 
-/// Appends the faces of a band, except those seen edge-on; each is written and then kept or not, so that no
-/// branch is mispredicted.
+/// Appends the faces of a band, except those seen edge-on. Each face is written first and then kept or not,
+/// so that no branch can be mispredicted.
 template <typename Belongs>
 void BandBuilder::append_references(std::span<const Interval> intervals, const Belongs& belongs) {
     std::uint32_t* faces = result_.references.room_for(intervals.size());
@@ -142,17 +144,17 @@ void BandBuilder::append_closed() {
     }
 }
 
-/// Where to cut a band in two, so that a query needs only the faces of its side: those of the lower half give
-/// the ray's crossings before the particle, those of the upper half the crossings beyond. Faces on both sides
-/// are listed twice.
+/// Where to cut a band in two, so that a query needs only the faces of its half: those of the lower half give
+/// the ray's crossings before the particle, those of the upper half the crossings beyond it. Faces in both
+/// halves are listed twice.
 std::optional<std::uint16_t> BandBuilder::split_of(std::span<const Interval> intervals) {
     constexpr std::size_t kLeastFaces = 6;
-    constexpr double kLeastGain = 0.3; // of the cost; for less, memory is better spent on more cells
+    constexpr double kLeastGain = 0.3; // share of the cost; for less, memory is better spent on more cells
     const std::size_t count = intervals.size();
     if (count < kLeastFaces) return std::nullopt;
     double best_cost = (1 - kLeastGain) * static_cast<double>(count * count);
 
-    // At the highest cut that leaves few enough below: do too many reach beyond it?
+    // Consider the highest cut with few enough faces below: if too many reach beyond it, no cut will do.
     const auto most_below = std::min(count - 1, truncated_to<std::size_t>(std::sqrt(best_cost)));
     const std::uint16_t highest = intervals[most_below].lower();
     std::size_t least_above = 0;
@@ -184,8 +186,9 @@ void BandBuilder::append_split(const MergedBand& band, std::uint16_t limit, std:
     append_references(band.intervals, [=](const Interval& interval) { return interval.upper() > limit; });
 }
 
-/// The same, with gaps cut into pieces by bands without faces. A band in which crossings do not determine the
-/// winding number gets such a band right above it, with only an uncertain gap between the two.
+/// Appends the bands of a cell of an open surface. Bands without faces cut the gaps into pieces. If crossings
+/// do not determine the winding number in a band, such a band follows directly above it, with only an
+/// uncertain gap between the two.
 void BandBuilder::append_open(std::uint32_t cell) {
     const double whole = l1_at_sphere(cell);
     uncertain_ = 0;
@@ -199,19 +202,22 @@ void BandBuilder::append_open(std::uint32_t cell) {
         }
         lower = band.upper;
     }
-    constexpr double kBeyondOtherRays = 1.05; // the middle's is not the longest way to the sphere
+    constexpr double kBeyondOtherRays =
+        1.05; // other rays of the cell may reach the sphere at a larger norm than the middle one
     const auto end = truncated_to<std::uint16_t>(kBeyondOtherRays * whole / ExactMapView::kBandUnit);
     const std::uint16_t limit = std::max(end, lower);
-    append_limit(limit, limit, append_gap(cell, lower, limit, 0)); // nothing was examined beyond it
+    append_limit(limit, limit,
+                 append_gap(cell, lower, limit, 0)); // the space beyond the limit was not examined
     result_.volumes.push_back({uncertain_, whole * whole * whole});
 }
 
-/// Appends all pieces of a gap but the last, whose winding number is returned.
+/// Appends all pieces of a gap except the last, whose winding number it returns.
 std::int16_t BandBuilder::append_gap(std::uint32_t cell, std::uint16_t lower, std::uint16_t upper,
                                      int crossings) {
     pieces_.clear();
     gap_states_->append_pieces(cell, {lower, upper, crossings}, pieces_);
-    if (pieces_.empty()) return ExactMapView::kUncertain; // a gap without a place in it
+    if (pieces_.empty())
+        return ExactMapView::kUncertain; // a gap that contains no lattice point of the middle ray
     const double whole = l1_at_sphere(cell);
     std::uint16_t piece_lower = lower;
     for (const GapPiece& piece : pieces_) {

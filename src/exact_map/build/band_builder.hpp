@@ -15,22 +15,22 @@
 
 namespace echinus {
 
-/// A cell's part of the bounding sphere, up to a common factor.
+/// The volume of a cell within the bounding sphere and the uncertain part of it, up to a common factor.
 struct CellVolume {
     double uncertain, whole;
 };
 
-/// Bands of some cells, one after the other; what they hold is as in ExactMapView.
+/// Bands of some cells, one after the other; the contents are as in ExactMapView.
 struct BandList {
     Arena<std::uint32_t> band_counts; ///< [cell_count]
     Arena<Band> bands;
     Arena<std::int16_t> winding_below;
     Arena<std::uint32_t> references;
     Arena<std::uint16_t> reference_parts;
-    Arena<CellVolume> volumes; ///< [cell_count] of an open surface; none of a closed one
+    Arena<CellVolume> volumes; ///< [cell_count] for an open surface, otherwise empty
 
     void clear();
-    /// Makes room for what so many more intervals and cells usually need.
+    /// Reserves the memory that this many more intervals and cells usually need.
     void make_room(std::size_t interval_count, std::size_t cell_count);
 };
 
@@ -51,20 +51,20 @@ class IntervalSorter {
 /// Turns the intervals of cells into bands, cell by cell.
 class BandBuilder {
   public:
-    /// @param gap_states  of an open surface; none when it is closed
-    /// @param result      receives the bands at its end
+    /// @param gap_states  for an open surface; null for a closed one
+    /// @param result      the bands are appended to it
     BandBuilder(const OctahedralCells& cells, const GapStates* gap_states, BandList& result)
         : cells_(cells), gap_states_(gap_states), result_(result) {}
 
-    /// @param intervals  of the cell; get sorted
-    /// @throws Error InvalidMesh when a winding number is too large to be stored
+    /// @param intervals  the intervals of the cell; they are sorted
+    /// @throws Error InvalidMesh if a winding number is too large to be stored
     void add_cell(std::uint32_t cell, std::span<Interval> intervals);
 
   private:
     struct MergedBand {
         std::uint16_t lower, upper;
         std::span<const Interval> intervals;
-        int winding_below; ///< on the ray through the cell's middle
+        int winding_below; ///< winding number below the band, on the ray through the cell's middle
     };
 
     void merge(std::span<const Interval> intervals);
@@ -86,7 +86,7 @@ class BandBuilder {
     std::vector<MergedBand> merged_;
     std::vector<GapPiece> pieces_;
     std::vector<std::uint16_t> uppers_;
-    double uncertain_ = 0; ///< volume of the cell at hand
+    double uncertain_ = 0; ///< the uncertain volume of the current cell
 };
 
 } // namespace echinus

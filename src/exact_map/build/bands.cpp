@@ -13,25 +13,25 @@ namespace {
 
 constexpr std::size_t kBytesPerBand = sizeof(Band) + sizeof(std::int16_t);
 constexpr std::size_t kBytesPerCell = sizeof(std::uint32_t) + sizeof(std::uint16_t);
-/// The last offset, and the sentinel that ends the bands.
+/// The bytes of the last offset and of the sentinel that ends the bands.
 constexpr std::size_t kBytesOfEnds = sizeof(std::uint32_t) + sizeof(Band);
 
-/// So that bands can be numbered in 31 bits. References can, since an interval gives at most two.
+/// Keeps the numbers of bands within 31 bits. Those of references are, since an interval gives at most two.
 constexpr std::size_t kMostBytes = std::min<std::uint64_t>(std::uint64_t{kBytesPerBand} << 31, SIZE_MAX);
 static_assert(2 * BandFinder::kMostIntervals < std::size_t{1} << 31);
 
-/// With the parts that it touches.
+/// The bytes of a reference, including the parts of the cell that its face touches.
 std::size_t bytes_per_reference(std::size_t face_count) {
     return IndexStorage::bytes_per_number(face_count) + sizeof(std::uint16_t);
 }
 
-/// Intervals take several times the memory of the references that they become. Where there may be many, the
-/// octants are therefore dealt with one after the other, so that the intervals of one are in memory at a
-/// time; where there are few, it is not worth starting the threads eight times.
-/// @param most_intervals  that may be found, all octants together
+/// Intervals take several times the memory of the references that they become. If there may be many, the
+/// octants are therefore processed one after the other, so that only the intervals of one are in memory at a
+/// time; otherwise it is not worth starting the threads eight times.
+/// @param most_intervals  an upper bound for all octants together
 std::uint32_t octants_at_a_time(std::size_t most_intervals, std::size_t face_count, std::size_t cell_count) {
     constexpr std::size_t kMany = std::size_t{1} << 21;
-    constexpr std::size_t kCellsPerFace = 16; // one in so many, of long faces that lie close together
+    constexpr std::size_t kCellsPerFace = 16; // long faces that lie close together cross one cell in 16
     return std::min(most_intervals, face_count * cell_count / kCellsPerFace) > kMany ? 1 : 8;
 }
 
@@ -69,7 +69,7 @@ bool BandFinder::find(const LatticeMesh& lattice, const ExactMapView& surface, c
     return true;
 }
 
-/// Of the cells whose intervals are there.
+/// Finds the bands of the cells whose intervals have been found.
 void BandFinder::find_blocks(const GapStates* gap_states, const OctahedralCells& cells, unsigned thread_count,
                              std::size_t bytes_per_reference, LimitedCount& byte_count) {
     const std::size_t cell_count = intervals_.cell_count();
@@ -133,7 +133,8 @@ void BandFinder::copy(const Block& block, Bands& result) const {
         result.offsets[block.first_cell + i] = offset;
         offset += list.band_counts[block.first_count + i];
     }
-    const auto moved = static_cast<std::uint32_t>(block.to_reference - block.first_reference); // modulo 2^32
+    const auto moved =
+        static_cast<std::uint32_t>(block.to_reference - block.first_reference); // computed modulo 2^32
     for (std::size_t i = 0; i < block.band_count; ++i) {
         const Band& band = list.bands[block.first_band + i];
         result.bands[block.to_band + i] = {band.lower, band.upper, band.first_reference + moved};

@@ -15,13 +15,13 @@
 
 namespace echinus {
 
-/// The storage of an IndexArray. Keeps its memory between uses.
+/// The storage of an IndexArray. It keeps its memory between uses.
 class IndexStorage {
   public:
-    /// Of numbers that are all below `bound`.
+    /// The bytes of one number, if all numbers are below `bound`.
     static constexpr std::size_t bytes_per_number(std::size_t bound) { return bound <= 65536 ? 2 : 4; }
 
-    /// Makes room for so many numbers, all below `bound`; what they are is arbitrary until set.
+    /// Makes room for this many numbers, all below `bound`; their values are arbitrary until set.
     void reset(std::size_t size, std::size_t bound) {
         const bool narrow = bytes_per_number(bound) == 2;
         narrow_.reset(narrow ? size : 0);
@@ -29,7 +29,7 @@ class IndexStorage {
         is_narrow_ = narrow;
     }
 
-    /// Calls visit(pointer to the numbers), of the type that they are stored in.
+    /// Calls visit(pointer to the numbers) with a pointer to the type that they are stored in.
     template <typename Visit>
     void with_numbers(const Visit& visit) {
         if (is_narrow_)
@@ -51,47 +51,48 @@ class IndexStorage {
 struct Bands {
     Arena<std::uint32_t> offsets; ///< [cell_count + 1]
     Arena<Band> bands;            ///< [band_count + 1]
-    IndexStorage references;      ///< faces; edge-on faces have none
+    IndexStorage references;      ///< faces; those seen edge-on have no references
     Arena<std::uint16_t> reference_parts;
     Arena<std::int16_t> winding_below; ///< [band_count]
-    Arena<CellVolume> volumes;         ///< [cell_count] of an open surface; none of a closed one
+    Arena<CellVolume> volumes;         ///< [cell_count] for an open surface, otherwise empty
 };
 
 /// The size of a map's bands, including the outer limits.
 std::size_t byte_count(const Bands& bands);
 
-/// Faces of the band that the average reference belongs to: those that a query near the surface meets.
+/// The number of faces in the band of an average reference: those that a query near the surface tests.
 double expected_tests(const Bands& bands);
 
-/// How finely bands tell directions and gaps apart.
+/// How finely bands distinguish directions and gaps.
 struct BandDetail {
     OctahedralCells cells;
-    int gap_halvings = GapStates::kMostHalvings; ///< that an open surface's gaps may take
+    int gap_halvings = GapStates::kMostHalvings; ///< the most halvings of a gap of an open surface
 };
 
-/// Finds the bands of every cell; keeps its memory for the next time.
+/// Finds the bands of every cell. It keeps its memory for the next call.
 class BandFinder {
   public:
-    /// Faces pass through no more cells, counted together, whatever the limit.
+    /// The most cells that all faces together may pass through, whatever the limit of bytes.
     static constexpr std::size_t kMostIntervals = std::size_t{1} << 28;
 
-    /// Finds the bands of every cell and the winding numbers between them; reuses the memory of `result`.
-    /// Does not depend on the number of threads.
-    /// @param surface     the map but for its bands; only of an open surface it has to be there
-    /// @param byte_limit  on byte_count(). It holds for edge-on faces too, as if they had references. What
-    ///                    exceeds it is given up as soon as that shows, so that time and memory are bounded
-    ///                    by the limit, the faces and the cells
-    /// @returns  false when the limit was exceeded; `result` is as it was then
-    /// @throws Error InvalidMesh when a winding number is too large to be stored
+    /// Finds the bands of every cell and the winding numbers between them; reuses the memory of `result`. The
+    /// result does not depend on the number of threads.
+    /// @param surface     the map without its bands; needed only for an open surface
+    /// @param byte_limit  the limit of byte_count(). Faces seen edge-on count as if they had references. The
+    ///                    search stops as soon as the limit is known to be exceeded, so that time and memory
+    ///                    are bounded by the limit, the faces and the cells
+    /// @returns  false if the limit was exceeded; `result` is then unchanged
+    /// @throws Error InvalidMesh if a winding number is too large to be stored
     bool find(const LatticeMesh& lattice, const ExactMapView& surface, const BandDetail& detail,
               unsigned thread_count, std::size_t byte_limit, Bands& result);
 
   private:
-    /// Bands of consecutive cells in a worker's list, and where they go.
+    /// Bands of consecutive cells in a worker's list, and their destination.
     struct Block {
         std::size_t worker;
         std::size_t first_cell, cell_count;
-        std::size_t first_count; ///< of BandList::band_counts; further numbers of the list's arrays:
+        std::size_t
+            first_count; ///< index into BandList::band_counts; further indices into the list's arrays:
         std::size_t first_band, band_count, first_reference, reference_count, first_volume;
         std::size_t to_band, to_reference;
     };

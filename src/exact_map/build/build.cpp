@@ -27,17 +27,19 @@
 
 namespace echinus {
 
-// From a mesh to an exact map: onto the lattice, into a tree, into the cells.
+// Builds an exact map from a mesh: snaps it to the lattice, builds the tree, and finds the bands of the
+// cells.
 
 namespace {
 
-/// Faces on the list of the average reference, which is what a particle near the surface meets, in maps of
-/// few cells.
+/// The length of the average reference's list, that is, the number of faces that a query near the surface
+/// tests; measured in maps of few cells.
 class ListLengths {
   public:
     ListLengths(unsigned thread_count, BandFinder& finder) : thread_count_(thread_count), finder_(finder) {}
 
-    /// The first centre decides on the cells; another for which they take too many bytes is none.
+    /// The first centre determines the number of cells; any other for which they take too many bytes counts
+    /// as unusable.
     double of(const LatticeMesh& lattice) {
         bool found = find(lattice);
         for (; !found && is_first_; found = find(lattice)) divisions_ /= 2;
@@ -48,19 +50,19 @@ class ListLengths {
   private:
     bool find(const LatticeMesh& lattice) {
         const std::size_t limit = default_byte_limit(lattice.faces.size(), lattice.vertices.size());
-        // The border does not matter to the length of lists.
+        // The border does not affect the length of lists.
         return finder_.find(lattice, {}, {OctahedralCells(divisions_)}, thread_count_, limit, bands_);
     }
 
     unsigned thread_count_;
     BandFinder& finder_;
     Bands bands_;
-    std::uint32_t divisions_ = 12; ///< more would take much time and rank centres alike
+    std::uint32_t divisions_ = 12; ///< more would take long and rank the centres alike
     bool is_first_ = true;
 };
 
 /// Snaps the mesh to the lattice of a centre from which queries should test few faces, estimated by maps of
-/// few cells. About twenty coarse builds.
+/// few cells. Takes about twenty coarse builds.
 /// @throws Error as LatticeSnapper::snap()
 void snap_around_best_centre(LatticeSnapper& snapper, std::span<const Vec3f> vertices, unsigned thread_count,
                              BandFinder& finder, LatticeMesh& best) {
@@ -81,8 +83,8 @@ void require_sound(const ExactMapOptions& options) {
                     "divisions and byte_budget are both given; leave one of them out");
 }
 
-/// As people write it, with three digits: "48.5 MB". Rounded up, so that a map of these bytes keeps within
-/// it.
+/// The size in customary units with three digits: "48.5 MB". Rounded up, so that a map of this many bytes
+/// stays within the stated size.
 std::string size_text(std::size_t byte_count) {
     constexpr std::array kUnits{"B", "KB", "MB", "GB"};
     std::size_t unit = 0;
@@ -98,7 +100,8 @@ std::string size_text(std::size_t byte_count) {
 std::uint64_t hash_of(std::span<const Vec3f> vertices, std::span<const Triangle> faces, const Vec3d& origin,
                       const ExactMapOptions& options, bool is_closed) {
     constexpr std::uint64_t kWithoutCertainGaps = std::uint64_t{1} << 32;
-    const bool finds_gaps = options.find_certain_gaps || is_closed; // where all are certain
+    const bool finds_gaps =
+        options.find_certain_gaps || is_closed; // in a closed surface all gaps are certain
     const std::array<std::uint64_t, 4> fields{options.divisions | (finds_gaps ? 0 : kWithoutCertainGaps),
                                               options.byte_budget, static_cast<std::uint64_t>(options.rule),
                                               static_cast<std::uint64_t>(options.centre)};
@@ -116,7 +119,7 @@ struct OwnedArrays {
     OwnedWindingTree winding_tree;
 };
 
-/// All arrays except the bands.
+/// A view of all arrays except the bands.
 ExactMapView surface_of(const OwnedArrays& arrays) {
     ExactMapView view;
     view.vertices = std::span(arrays.vertices).subspan(1);
@@ -174,12 +177,12 @@ ExactMapStatistics statistics_of(std::size_t face_count, std::size_t dropped_fac
                     "on each other");
 }
 
-/// The steps from vertices to a map. Keeps what helps from one pose of a mesh to the next: the data that
-/// depend on the faces alone, the order of the tree, which changes little, and memory.
+/// The steps from vertices to a map. It keeps what speeds up the next pose of a mesh: the data that depend on
+/// the faces alone, the order of the tree, which changes little, and memory.
 class MapMaker {
   public:
-    /// @param faces  are to stay in place
-    /// @param origin  of the frame of all vertices
+    /// @param faces  must stay in place
+    /// @param origin  the origin of the frame of all vertices
     MapMaker(std::span<const Triangle> faces, const ExactMapOptions& options, const Vec3d& origin = {})
         : faces_(faces), origin_(origin), options_(options), snapper_(faces) {}
 
@@ -198,9 +201,9 @@ class MapMaker {
     Vec3d origin_;
     ExactMapOptions options_;
     LatticeSnapper snapper_;
-    LatticeMesh lattice_; ///< faces in the order of the tree, once that is known
+    LatticeMesh lattice_; ///< faces in the order of the tree, once it is known
     std::size_t dropped_faces_ = 0;
-    std::vector<Triangle> faces_before_; ///< to swap with the lattice's
+    std::vector<Triangle> faces_before_; ///< swapped with the lattice's faces
     std::vector<std::uint32_t> numbers_before_;
     FaceTree tree_;
     BandFinder finder_;
@@ -221,8 +224,8 @@ void MapMaker::snap(std::span<const Vec3f> vertices) {
     if (dropped_faces_ != 0) add_collapsed_faces();
 }
 
-/// Faces that shrank to a segment or a point on the lattice take no part in what is inside. But they may
-/// still be the nearest surface of a particle: a needle may consist of them.
+/// Faces that shrank to a segment or a point on the lattice do not affect what is inside. But they may still
+/// be the nearest surface to a particle: a needle may consist of them.
 void MapMaker::add_collapsed_faces() {
     std::vector<bool> kept(faces_.size());
     for (std::uint32_t number : lattice_.face_numbers) kept[number] = true;
@@ -233,7 +236,7 @@ void MapMaker::add_collapsed_faces() {
     }
 }
 
-/// Puts the faces of the lattice in the order of the tree, and stores them.
+/// Puts the faces of the lattice into the order of the tree, and stores them.
 void MapMaker::order_faces() {
     std::swap(lattice_.faces, faces_before_);
     std::swap(lattice_.face_numbers, numbers_before_);
@@ -258,7 +261,7 @@ void MapMaker::order_faces() {
     });
 }
 
-/// All arrays except the bands.
+/// Sets all arrays except the bands.
 void MapMaker::set_surface(std::span<const Vec3f> vertices) {
     parallel_invoke(
         options_.thread_count,
@@ -270,23 +273,23 @@ void MapMaker::set_surface(std::span<const Vec3f> vertices) {
     if (!snapper_.faces_are_closed()) arrays_->border = find_border(lattice_);
     arrays_->vertices.clear();
     arrays_->vertices.reserve(1 + lattice_.vertices.size());
-    arrays_->vertices.emplace_back(); // so that vectors can read a number before the first
+    arrays_->vertices.emplace_back(); // so that vector loads can read one number before the first
     for (const LatticePoint& vertex : lattice_.vertices) arrays_->vertices.emplace_back(vertex);
     arrays_->winding_tree = {};
     if (!arrays_->border.empty()) arrays_->winding_tree = make_winding_tree(surface_of(*arrays_));
 }
 
-/// @returns  false when the bands alone exceed the limit; those of the arrays stay as they are then
+/// @returns  false if the bands alone exceed the limit; the bands in the arrays are then unchanged
 bool MapMaker::find_bands(std::uint32_t divisions, std::size_t byte_limit) {
     BandDetail detail{OctahedralCells(divisions)};
-    // The last way out must be a small map, as default_byte_limit() says.
+    // The map of one division, the last resort, must be small, as default_byte_limit() states.
     if (divisions == 1 && options_.divisions == 0) detail.gap_halvings = 1;
     if (!options_.find_certain_gaps) detail.gap_halvings = GapStates::kNone;
     return finder_.find(lattice_, surface_of(*arrays_), detail, options_.thread_count, byte_limit,
                         arrays_->bands);
 }
 
-/// Finds the bands for the wished number of cells. Returns the divisions.
+/// Finds the bands for the requested number of cells. Returns the divisions.
 std::uint32_t MapMaker::set_bands() {
     const bool open = !arrays_->border.empty();
     if (options_.byte_budget != 0)
@@ -302,7 +305,7 @@ std::uint32_t MapMaker::set_bands() {
     return set_bands_within({limit / 4 * 3, limit}, divisions - 1); // the last quarter is not worth the time
 }
 
-/// @throws Error InvalidOptions when there are no divisions that few bytes are enough for
+/// @throws Error InvalidOptions if no map, however coarse, fits
 std::uint32_t MapMaker::set_bands_within(const ByteRange& bytes, std::uint32_t most) {
     const std::size_t for_surface = surface_of(*arrays_).byte_count();
     const auto for_bands = [&](std::size_t count) { return count - std::min(count, for_surface); };
@@ -320,7 +323,8 @@ std::uint32_t MapMaker::set_bands_within(const ByteRange& bytes, std::uint32_t m
 }
 
 ExactMap MapMaker::make(std::span<const Vec3f> vertices) {
-    if (arrays_.use_count() != 1) arrays_ = std::make_shared<OwnedArrays>(); // the old ones are still in use
+    if (arrays_.use_count() != 1)
+        arrays_ = std::make_shared<OwnedArrays>(); // the old arrays are still in use
     snap(vertices);
     set_surface(vertices);
     const std::uint32_t divisions = set_bands();

@@ -15,14 +15,14 @@ namespace {
 constexpr std::int32_t kPartsPerSide = OctahedralCells::kPartsPerSide;
 constexpr std::uint16_t kAllParts = 0xFFFF;
 
-/// Widening of a polygon, in widths of a part.
+/// How far a polygon is widened, in widths of a part.
 constexpr double kSlack = 1e-3;
 
 double sum_of(const Vec3d& p) {
     return p.x + p.y + p.z;
 }
 
-/// The corners of a face cut by at most four planes, each of which adds one.
+/// The corners of a face that was cut by at most four planes, each of which adds at most one corner.
 class Polygon {
   public:
     void add(const Vec3d& corner) { corners_[size_++] = corner; }
@@ -30,7 +30,7 @@ class Polygon {
     const Vec3d* begin() const { return corners_.data(); }
     const Vec3d* end() const { return corners_.data() + size_; }
 
-    /// The part where a linear function is not negative (Sutherland and Hodgman 1974).
+    /// The part in which a linear function is not negative (Sutherland and Hodgman 1974).
     template <typename Linear>
     Polygon clipped(const Linear& value_at) const {
         Polygon result;
@@ -53,18 +53,19 @@ class Polygon {
     std::size_t size_ = 0;
 };
 
-/// along_x x + along_y y + at_origin over the octant's triangle, with coordinates in widths of a part.
+/// The function along_x x + along_y y + at_origin on the octant's triangle, with coordinates in widths of a
+/// part.
 struct Affine {
     double along_x, along_y, at_origin;
 
     double operator()(double x, double y) const { return along_x * x + along_y * y + at_origin; }
-    /// Least and most over a part that is not turned, less the value at its origin. A turned part is that
-    /// part mirrored in its origin.
+    /// Minimum and maximum over a part that is not turned, relative to the value at its origin. A turned part
+    /// is that part mirrored in its origin.
     double least_in_part() const { return 0.5 * (least_slope() - std::fabs(least_slope())); }
     double most_in_part() const { return 0.5 * (most_slope() + std::fabs(most_slope())); }
 
   private:
-    // Cut off at 0 without a branch, of which a compiler would make one.
+    // Clamped at 0 above without the branch that a compiler would generate for std::min.
     double least_slope() const { return std::min(along_x, along_y); }
     double most_slope() const { return std::max(along_x, along_y); }
 };
@@ -84,10 +85,10 @@ constexpr Range kEmptyRange{std::numeric_limits<double>::infinity(),
 /// A face's plane, normal . p = height.
 struct Plane {
     Vec3d normal;  ///< exact
-    double height; ///< 0 only if it is
+    double height; ///< 0 only if it is exactly 0
 };
 
-/// Bits first to last of a word; those of them that a word has.
+/// A word with bits first to last set, limited to the bits of a word.
 std::uint64_t ones(std::int32_t first, std::int32_t last) {
     first = std::max(first, 0);
     last = std::min(last, 63);
@@ -97,10 +98,10 @@ std::uint64_t ones(std::int32_t first, std::int32_t last) {
 
 /// A face's directions in one octant, mirrored to where all coordinates are positive.
 ///
-/// Row i of the octant, x from i to i + 1 in widths of a part, is a strip of triangles, 2 j for the part of
-/// square j that is not turned and 2 j + 1 for the one that is. A half-plane whose bounding line crosses the
-/// row touches a triangle and all that follow it, or all that come before it. So what the polygon touches of
-/// the row runs from a first triangle to a last.
+/// Row i of the octant, where x is from i to i + 1 in widths of a part, is a strip of triangles: number 2 j
+/// is the part of square j that is not turned and 2 j + 1 the one that is. A half-plane whose bounding line
+/// crosses the row touches one triangle and all that follow it, or all that precede it. So the triangles of a
+/// row that the polygon touches are consecutive.
 class OctantCover {
   public:
     OctantCover(const OctahedralCells& cells, std::uint32_t octant, const Polygon& polygon,
@@ -127,27 +128,28 @@ class OctantCover {
         double x, y;
     };
 
-    /// Whole numbers, closed; empty where first > last.
+    /// A closed range of integers; empty if first > last.
     struct Run {
         std::int32_t first, last;
     };
 
-    /// A side of the polygon as a half-plane.
+    /// A side of the polygon, as a half-plane.
     struct Side {
-        Affine inner; ///< not negative on the polygon's side of the line, and `slack` beyond
+        Affine inner; ///< not negative on the polygon's side of the line and up to `slack` beyond it
         double slack;
     };
 
-    /// Where a side's line crosses row i. Of the triangles that are not turned, the half-plane's first or
-    /// last is slope i + upright, rounded to the next even number; of the turned ones it is one more than
-    /// slope i + turned, rounded likewise.
+    /// Where a side's line crosses row i. The first or last triangle of the half-plane among those that are
+    /// not turned is slope i + upright, rounded to the nearest even number; among the turned ones it is one
+    /// more than slope i + turned, rounded likewise.
     struct Crossing {
         double slope, upright, turned;
     };
 
-    using Row = std::array<double, kPartRows>; ///< of cells: a number for each row of parts
+    using Row = std::array<double, kPartRows>; ///< one number for each row of parts in a row of cells
 
-    /// The next even number; of two that are equally near, either. In vector instructions of any age.
+    /// The nearest even number; of two that are equally near, either. Uses only operations that every
+    /// instruction set has for vectors.
     static double even(double value) {
         constexpr double kShift = 0x1.8p53; // doubles that large are even
         return (value + kShift) - kShift;
@@ -156,7 +158,7 @@ class OctantCover {
     /// @pre -2 <= value < 2^30
     static std::int32_t floor_of(double value) { return truncated_to<std::int32_t>(value + 2) - 2; }
 
-    /// Sides of cells and parts as separating lines.
+    /// Uses the sides of cells and parts as separating lines.
     void set_ranges() {
         Range x = kEmptyRange, y = kEmptyRange, diagonal = kEmptyRange;
         for (std::size_t k = 0; k < size_; ++k) {
@@ -171,10 +173,10 @@ class OctantCover {
                       std::min(floor_of(diagonal.high + 2 * kSlack), end)};
     }
 
-    /// The polygon's own sides as separating lines.
+    /// Uses the polygon's own sides as separating lines.
     void add_sides() {
-        // A triangle has at most two of each. Where it has one, a line beyond all rows is the other: a number
-        // of rounds that never changes is never mispredicted.
+        // A triangle has at most two sides of each kind. If it has only one, a line beyond all rows replaces
+        // the other: a loop with a constant number of rounds is never mispredicted.
         const double beyond = 4.0 * fine_n_;
         firsts_[0] = firsts_[1] = {0, -beyond, -beyond};
         lasts_[0] = lasts_[1] = {0, beyond, beyond};
@@ -183,7 +185,8 @@ class OctantCover {
             const Point &a = corners_[k], &b = corners_[k + 1 < size_ ? k + 1 : 0];
             doubled_area += a.x * b.y - a.y * b.x;
         }
-        // Where the polygon is so thin that rounding decides this, both signs keep what is within the slack.
+        // If the polygon is so thin that rounding decides the sign, either sign keeps all that lies within
+        // the slack.
         const double sign = std::copysign(1.0, doubled_area);
         for (std::size_t k = 0; k < size_; ++k) {
             const Point &a = corners_[k], &b = corners_[k + 1 < size_ ? k + 1 : 0];
@@ -203,14 +206,14 @@ class OctantCover {
     void add_side(const Side& side) {
         sides_[side_count_++] = side;
         const Affine& inner = side.inner;
-        constexpr double kParallel = 1e-9; // to the rows: then the range of rows says the same
+        constexpr double kParallel = 1e-9; // parallel to the rows: the range of rows is then equivalent
         if (std::fabs(inner.along_y) < kParallel * std::fabs(inner.along_x)) return;
         const double scale = -2 / inner.along_y;
         const double slope = inner.along_x * scale;
         const double upright = (inner.at_origin + inner.most_in_part()) * scale;
         const double turned = slope - 2 + (inner.at_origin - inner.least_in_part()) * scale;
-        // Rounded up where the half-plane begins and down where it ends. Which one it is cannot be predicted,
-        // so both are written and one is kept.
+        // Rounded up if the half-plane begins here and down if it ends here. Which one it is cannot be
+        // predicted, so both are written and one is kept.
         const bool begins = inner.along_y > 0;
         constexpr std::size_t kSpare = 8;
         firsts_[begins ? first_count_ : kSpare] = {slope, upright + 1, turned + 1};
@@ -239,7 +242,7 @@ class OctantCover {
         part_highs_[kNoPart] = kEmptyRange.high;
     }
 
-    /// The triangles that the polygon touches in the rows of parts of a row of cells.
+    /// The triangles that the polygon touches in each row of parts within a row of cells.
     std::array<Run, kPartRows> strips(std::int32_t i) const {
         Row first, last;
         for (std::size_t row = 0; row < kPartRows; ++row) {
@@ -293,7 +296,7 @@ class OctantCover {
             add_squares(i, {j, std::min(squares.last, j + kSquaresPerWord - 1)}, runs, covers);
     }
 
-    /// Adds cells of some squares in a row of cells, whose strips are bytes of four words.
+    /// Adds the cells of some squares in a row of cells; their strips are bytes of four words.
     void add_squares(std::int32_t i, const Run& squares, const std::array<Run, kPartRows>& strips,
                      std::vector<CellCover>& covers) const {
         std::array<std::uint64_t, kPartRows> words;
@@ -321,32 +324,33 @@ class OctantCover {
             {cells_.index(octant_, i, j, down), static_cast<std::uint16_t>(parts), middle, l1.low, l1.high});
     }
 
-    /// Holds every place of the polygon over the parts, and lies within the polygon's own range:
-    /// l1_.low <= low <= high <= l1_.high.
+    /// A range that contains every point of the polygon over the parts and lies within the polygon's own
+    /// range: l1_.low <= low <= high <= l1_.high.
     ///
-    /// Places over the parts lie in two ranges: the polygon's, since the L1 norm is linear and has its
-    /// extremes at corners, and the plane's over the parts. Cutting the ends of the one to the other gives
-    /// what they share, and loses no place. They share nothing where the cover took in parts, within its
-    /// slack, that the polygon does not enter; a plane that is steep against the rays may be anywhere there,
-    /// at infinity, too. Then there is no place to lose, and cutting leaves the polygon's end that is next to
-    /// the plane, which is on the lattice. As cutting keeps the order of two numbers, low never exceeds high.
+    /// Points over the parts lie in two ranges: the polygon's, since the L1 norm is linear and has its
+    /// extremes at corners, and the plane's over the parts. Clamping the ends of the latter to the former
+    /// gives their intersection and loses no point. The intersection is empty if the cover, within its slack,
+    /// includes only parts that the polygon does not enter; a plane that is steep relative to the rays may
+    /// then be anywhere, even at infinity. In this case there is no point to lose, and clamping yields the
+    /// end of the polygon's range next to the plane, which is on the lattice. As clamping keeps the order of
+    /// two numbers, low never exceeds high.
     template <bool down>
     Range l1_range(std::int32_t i, std::int32_t j, std::uint32_t parts) const {
         if (!std::isfinite(reciprocal_error_)) return l1_; // edge-on
         const Range in_cell = range_over(parts);
-        // A down cell is seen with its axes turned.
+        // A down cell has its axes reversed.
         const std::int32_t turn = down ? 1 : 0;
         const double at_origin = reciprocal_(kPartsPerSide * (i + turn), kPartsPerSide * (j + turn));
         const double low = at_origin + (down ? -in_cell.high : in_cell.low) - reciprocal_error_;
         const double high = at_origin + (down ? -in_cell.low : in_cell.high) + reciprocal_error_;
-        // The plane is in front of the origin where the reciprocal is positive, and beyond all bounds next to
-        // where it is 0.
+        // The plane is in front of the origin where the reciprocal is positive, and unbounded near where it
+        // is 0.
         return {high > 0 ? std::clamp(1 / high, l1_.low, l1_.high) : l1_.low,
                 low > 0 ? std::clamp(1 / low, l1_.low, l1_.high) : l1_.high};
     }
 
-    /// Extremes of the reciprocal over parts of a cell, less its value at the cell's origin. It ascends or
-    /// descends along every strip, so that they lie at ends of rows.
+    /// Extremes of the reciprocal over parts of a cell, relative to its value at the cell's origin. It
+    /// ascends or descends along every strip, so its extremes are at ends of rows.
     Range range_over(std::uint32_t parts) const {
         const std::size_t low_end = reciprocal_.along_y >= 0 ? 0 : 1;
         const auto lows = kRowEnds.of(parts, low_end), highs = kRowEnds.of(parts, 1 - low_end);
@@ -356,7 +360,7 @@ class OctantCover {
                          std::max(part_highs_[highs[2]], part_highs_[highs[3]]))};
     }
 
-    /// Without a branch, since the outcome is unpredictable.
+    /// Computed without a branch, since the outcome is unpredictable.
     MiddleRay middle_ray(std::int32_t i, std::int32_t j, bool down) const {
         constexpr double kThird = kPartsPerSide / 3.0;
         const double offset = down ? 2 * kThird : kThird;
@@ -380,7 +384,7 @@ class OctantCover {
     std::int32_t fine_n_; ///< rows of parts in the octant
     std::array<Point, 8> corners_;
     std::size_t size_ = 0;
-    Run rows_, squares_, diagonals_; ///< that the polygon touches; diagonals: x + y
+    Run rows_, squares_, diagonals_; ///< ranges that the polygon touches; diagonals: x + y
     Range l1_ = kEmptyRange;
     std::array<Side, 8> sides_;
     std::size_t side_count_ = 0;
@@ -389,11 +393,12 @@ class OctantCover {
     std::size_t first_count_ = 0, last_count_ = 0;
     Affine reciprocal_;
     double reciprocal_error_;
-    std::array<double, kNoPart + 1> part_lows_, part_highs_; ///< of the reciprocal, as range_over() says
+    std::array<double, kNoPart + 1> part_lows_,
+        part_highs_; ///< extremes of the reciprocal over parts, as in range_over()
 };
 
-/// Nearer to the origin than this many lattice steps, directions of cut corners cannot be told apart in
-/// double. A face there is put into every part of every cell of the octant; the centre of a map is seldom
+/// Closer to the origin than this many lattice steps, the directions of cut corners cannot be distinguished
+/// in double. A face there is listed in every part of every cell of the octant; the centre of a map is seldom
 /// that close to a surface.
 constexpr double kNear = 8;
 
@@ -402,7 +407,7 @@ void cover_near_octant(const OctahedralCells& cells, std::uint32_t octant, const
     const std::size_t first = covers.size();
     const Polygon rest = polygon.clipped([](const Vec3d& p) { return sum_of(p) - kNear / 2; });
     if (!rest.empty()) OctantCover(cells, octant, rest, plane).add_cells(covers);
-    // A cell may list a face but once, or its crossings would count twice.
+    // A cell must list a face only once, or its crossings would count twice.
     const auto cells_per_octant = static_cast<std::uint32_t>(cells.divisions() * cells.divisions());
     std::vector<bool> covered(cells_per_octant);
     for (std::size_t i = first; i < covers.size(); ++i) {
@@ -425,7 +430,8 @@ void cover_octant(const OctahedralCells& cells, std::uint32_t octant, const Poly
         OctantCover(cells, octant, polygon, plane).add_cells(covers);
 }
 
-/// Bit k: has some corner a coordinate k that is not negative? A face that only touches a wall counts.
+/// Bit k is set if some corner has a coordinate k that is not negative. A face that only touches a wall
+/// counts.
 std::uint32_t reached_sides(const std::array<LatticePoint, 3>& face) {
     const auto reaches = [&](std::int64_t LatticePoint::*c) {
         return std::uint32_t{std::max(std::max(face[0].*c, face[1].*c), face[2].*c) >= 0};
@@ -433,7 +439,7 @@ std::uint32_t reached_sides(const std::array<LatticePoint, 3>& face) {
     return reaches(&LatticePoint::x) | reaches(&LatticePoint::y) << 1 | reaches(&LatticePoint::z) << 2;
 }
 
-/// Mirrors to where all coordinates of the octant are positive.
+/// Mirrors a vector so that all coordinates of the octant become positive.
 Vec3d mirrored(const Vec3d& v, std::uint32_t octant) {
     constexpr std::array<double, 2> kSign{1, -1};
     return {v.x * kSign[octant & 1U], v.y * kSign[octant >> 1 & 1U], v.z * kSign[octant >> 2 & 1U]};
@@ -458,7 +464,7 @@ void cover_cells(const OctahedralCells& cells, const Octants& octants,
     if (both == 0 && !octants.hold(negative)) return;
     const LatticePoint normal = cross(face[1] - face[0], face[2] - face[0]);
     const auto height = static_cast<double>(dot(normal, face[0]));
-    if (both == 0) { // as nearly always
+    if (both == 0) { // the usual case
         Polygon polygon;
         for (const LatticePoint& corner : face) polygon.add(mirrored(Vec3d(corner), negative));
         return cover_octant(cells, negative, polygon, {mirrored(Vec3d(normal), negative), height}, covers);

@@ -17,10 +17,10 @@ enum class MiddleRay : std::uint8_t {
     Unsure, ///< rounding might decide
 };
 
-/// Where a face passes through a cell's cone.
+/// Where a face passes through the cone of a cell.
 struct CellCover {
     std::uint32_t cell;
-    std::uint16_t parts; ///< of the cell that the face touches, a bit each
+    std::uint16_t parts; ///< parts of the cell that the face touches, one bit each
     MiddleRay middle;
     double nearest, farthest; ///< range of the L1 norm, in lattice steps
 };
@@ -31,22 +31,22 @@ struct Octants {
 
     std::uint32_t count() const { return last - first; }
     bool hold(std::uint32_t octant) const { return octant >= first && octant < last; }
-    /// A bit for each, as from octants_met().
+    /// One bit for each octant, as in octants_met().
     std::uint32_t bits() const { return (1U << last) - (1U << first); }
 };
 
-/// The octants that a face may touch, a bit each.
+/// The octants that a face may touch, one bit each.
 std::uint32_t octants_met(const std::array<LatticePoint, 3>& face);
 
 /// Appends every cell of these octants whose closed cone the face touches. Cells, parts and ranges are wider
-/// than the face by far more than this code rounds, so that none is missed; one too many costs a reference
-/// and no answer.
+/// than the face by far more than the rounding errors, so that none is missed; a superfluous one costs a
+/// reference but changes no answer.
 ///
-/// The face is cut at the octants' walls. In an octant its directions are a convex polygon of the plane
-/// x + y + z = 1, and a cell or part is touched unless a side of it or of the polygon lies between them (the
-/// separating axis theorem). So the polygon touches a run of neighbours in each row of parts, and is drawn
-/// row by row, as a rasteriser would. Over that plane the reciprocal of the L1 norm is an affine function, so
-/// its extremes lie at the corners of the parts touched.
+/// The face is cut at the octants' walls. In an octant its directions are a convex polygon in the plane x + y
+/// + z = 1, and a cell or part is touched unless one of its sides or of the polygon's separates them (the
+/// separating axis theorem). So the polygon touches consecutive parts in each row, and is drawn row by row,
+/// as by a rasteriser. Over that plane the reciprocal of the L1 norm is an affine function, so its extremes
+/// lie at the corners of the parts touched.
 void cover_cells(const OctahedralCells& cells, const Octants& octants,
                  const std::array<LatticePoint, 3>& face, std::vector<CellCover>& covers);
 

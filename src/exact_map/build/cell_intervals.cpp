@@ -12,10 +12,10 @@ namespace echinus {
 
 namespace {
 
-/// In band units, widened to whole ones. Never empty, as the cover's range ascends, and in 16 bits, as it
-/// ends within the lattice.
+/// The range of a cover in band units, widened to integers. It is never empty, since the cover's range
+/// ascends, and fits into 16 bits, since it ends within the lattice.
 std::uint64_t range_of(const CellCover& cover) {
-    constexpr double kRounding = 0.01; // lattice steps, far above what the cover rounds
+    constexpr double kRounding = 0.01; // lattice steps, far above the rounding errors of the cover
     static_assert((kMostL1Norm + 1) / ExactMapView::kBandUnit + 1 <= 0xFFFF);
     const auto lower = truncated_to<std::int32_t>(std::max(0.0, cover.nearest - kRounding));
     const auto upper = truncated_to<std::int32_t>(cover.farthest + kRounding) + 1;
@@ -23,7 +23,7 @@ std::uint64_t range_of(const CellCover& cover) {
                       static_cast<std::uint64_t>(band_unit_of(upper)) + 1);
 }
 
-/// A face on its way into the lists of the cells.
+/// A face that is being added to the lists of cells.
 struct CoveredFace {
     std::uint32_t number;
     std::array<LatticePoint, 3> corners;
@@ -73,7 +73,7 @@ void CellIntervals::find_octants_met(const LatticeMesh& lattice, unsigned thread
 void CellIntervals::cover_all_faces(const LatticeMesh& lattice, const OctahedralCells& cells,
                                     const Octants& octants, unsigned thread_count, LimitedCount& total) {
     workers_.resize(worker_count(thread_count));
-    const std::size_t cells_per_face = octants.count(); // seldom more
+    const std::size_t cells_per_face = octants.count(); // a face seldom touches more
     const bool all_octants = octants.count() == 8;
     for (Worker& worker : workers_) {
         worker.found.clear();
@@ -105,7 +105,7 @@ void CellIntervals::cover_all_faces(const LatticeMesh& lattice, const Octahedral
 }
 
 void CellIntervals::set_offsets() {
-    std::uint32_t offset = 0; // up to BandFinder::kMostIntervals, 2^28
+    std::uint32_t offset = 0; // at most BandFinder::kMostIntervals, 2^28
     for (std::size_t cell = 0; cell < cell_count(); ++cell) {
         offsets_[cell] = offset;
         for (Worker& worker : workers_) {

@@ -27,7 +27,7 @@ class LimitedCount {
     std::atomic<std::size_t> total_ = 0;
 };
 
-/// One thread's share of a LimitedCount, handed in by large portions: threads seldom meet there.
+/// One thread's share of a LimitedCount, added in large portions, so that threads seldom contend for it.
 class CountShare {
   public:
     explicit CountShare(LimitedCount& total) : total_(total) {}
@@ -35,7 +35,7 @@ class CountShare {
     CountShare(const CountShare&) = delete;
     CountShare& operator=(const CountShare&) = delete;
 
-    /// @returns  false when it is known that all threads together have counted too much
+    /// @returns  false if all threads together are known to have counted too many
     bool add(std::size_t count) {
         constexpr std::size_t kPortion = 1U << 16;
         mine_ += count;
@@ -50,15 +50,15 @@ class CountShare {
     std::size_t mine_ = 0;
 };
 
-/// A face's range in a cell.
+/// The range of a face in a cell.
 struct Interval {
-    /// Lower and upper end in band units, rounded outwards, and the face, from the high bits to the low: the
-    /// order of intervals.
+    /// From the high bits to the low: the lower and upper end in band units, rounded outwards, and the face.
+    /// Its order is that of intervals.
     std::uint64_t key;
     std::uint32_t cell;
     std::uint16_t parts;
-    std::int8_t crossing; ///< of the ray through the cell's middle: 1 outwards, -1 inwards, 0 none
-    bool edge_on;         ///< no ray meets the face, but it does part the inside from the outside
+    std::int8_t crossing; ///< crossing of the ray through the cell's middle: 1 outwards, -1 inwards, 0 none
+    bool edge_on;         ///< no ray meets the face, but it does separate the inside from the outside
 
     std::uint16_t lower() const { return static_cast<std::uint16_t>(key >> 48); }
     std::uint16_t upper() const { return static_cast<std::uint16_t>(key >> 32); }
@@ -66,15 +66,15 @@ struct Interval {
 };
 static_assert(sizeof(Interval) == 16);
 
-/// The faces of every cell of some octants, and the memory that it takes to find them: two intervals for each
-/// that is found.
+/// The faces of every cell of some octants, and the memory that the search takes: two intervals for each that
+/// is found.
 class CellIntervals {
   public:
-    /// Covers all faces and puts what was found by cells: each worker lists what it finds, and counts it by
-    /// cells, so that afterwards each knows where its own goes (a counting sort).
-    /// @param octants  all, or one after the other, beginning with the first
-    /// @param count    to which the intervals are added
-    /// @returns  false when the count was exceeded; nothing is found then
+    /// Covers all faces and sorts the intervals by cell. Each worker lists the intervals that it finds and
+    /// counts them per cell, so that afterwards it knows where its intervals go (a counting sort).
+    /// @param octants  all octants, or one at a time, beginning with the first
+    /// @param count    the intervals are added to it
+    /// @returns  false if the count exceeded its limit; the object then holds no intervals
     bool find(const LatticeMesh& lattice, const OctahedralCells& cells, const Octants& octants,
               unsigned thread_count, LimitedCount& count);
 
@@ -82,7 +82,7 @@ class CellIntervals {
     std::uint32_t first_cell() const { return first_cell_; }
     std::size_t cell_count() const { return offsets_.size() - 1; }
 
-    /// A cell's intervals, in an order that depends on chance; the caller may sort them.
+    /// A cell's intervals, in a nondeterministic order; the caller may sort them.
     /// @pre first_cell() <= cell < first_cell() + cell_count()
     std::span<Interval> of(std::uint32_t cell) {
         const std::size_t i = cell - first_cell_;
@@ -93,7 +93,8 @@ class CellIntervals {
     struct Worker {
         std::vector<CellCover> covers;
         Arena<Interval> found;
-        std::vector<std::uint32_t> next; ///< [cell_count] how many in each cell; then, where the next goes
+        std::vector<std::uint32_t>
+            next; ///< [cell_count] first the number of intervals per cell, then the index of the next
     };
 
     void cover_all_faces(const LatticeMesh& lattice, const OctahedralCells& cells, const Octants& octants,
@@ -101,7 +102,8 @@ class CellIntervals {
     void find_octants_met(const LatticeMesh& lattice, unsigned thread_count);
     void set_offsets();
 
-    Arena<std::uint8_t> octants_met_; ///< [face_count] by each face; of no use when all octants are asked for
+    Arena<std::uint8_t>
+        octants_met_; ///< [face_count] octants met by each face; unused if all octants are processed together
     std::uint32_t first_cell_ = 0;
     std::vector<Worker> workers_;
     Arena<Interval> by_cell_;

@@ -39,7 +39,7 @@ class KeyAlong {
 };
 
 /// Puts items whose keys are below the limit first, and returns how many there are. Every item is swapped,
-/// and what remains is decided by how far a position moves on: nothing for a processor to mispredict.
+/// and only the increment of a position depends on the comparison: nothing that a processor could mispredict.
 template <typename Key>
 std::size_t partition_below(std::span<TreeItem> items, std::uint64_t limit, const Key& key) {
     std::size_t below = 0;
@@ -52,7 +52,7 @@ std::size_t partition_below(std::span<TreeItem> items, std::uint64_t limit, cons
     return below;
 }
 
-/// Sorts by counting how many keys come before each: all pairs are compared, without a branch.
+/// Sorts by counting, for each key, how many come before it. This compares all pairs without a branch.
 template <std::size_t kMost, typename Key>
 void sort_few(std::span<TreeItem> items, const Key& key) {
     std::array<std::uint64_t, kMost> keys;
@@ -73,8 +73,8 @@ void sort_few(std::span<TreeItem> items, const Key& key) {
     for (std::size_t i = 0; i < count; ++i) items[rank[i]] = copy[i];
 }
 
-/// A key that about `left_count` items are below, from a sample; on the side of the middle, so that the next
-/// search has less to look at.
+/// Estimates, from a sample, a key below which there are about `left_count` items. The estimate errs towards
+/// the middle, so that the next search has fewer items to examine.
 template <typename Key>
 std::uint64_t estimated_limit(std::span<const TreeItem> items, std::size_t left_count, const Key& key) {
     constexpr std::size_t kLargestSample = 64;
@@ -83,15 +83,15 @@ std::uint64_t estimated_limit(std::span<const TreeItem> items, std::size_t left_
     for (std::size_t i = 0; i < size; ++i) sample[i] = key(items[i * items.size() / size]);
     std::sort(sample.begin(), sample.begin() + size);
     const std::size_t wanted = left_count * size / items.size();
-    // Beyond the wanted one by about what a sample errs, away from the nearer end.
+    // Shifted from the wanted element by about the error of a sample, away from the nearer end.
     const std::size_t margin = size >= 24 ? size / 12 : 1;
     const std::size_t chosen = 2 * left_count <= items.size() ? std::min(wanted + margin, size - 1)
                                                               : wanted - std::min(margin, wanted);
     return sample[chosen];
 }
 
-/// Puts the `left_count` smallest first (Hoare's selection, with limits from samples as Floyd and Rivest
-/// 1975).
+/// Puts the `left_count` smallest items first (Hoare's selection, with limits from samples as in Floyd and
+/// Rivest 1975).
 template <typename Key>
 void select(std::span<TreeItem> items, std::size_t left_count, const Key& key) {
     constexpr std::size_t kFew = 24;
@@ -99,7 +99,7 @@ void select(std::span<TreeItem> items, std::size_t left_count, const Key& key) {
         if (items.size() <= kFew) return sort_few<kFew>(items, key);
         std::uint64_t limit = estimated_limit(items, left_count, key);
         std::size_t below = partition_below(items, limit, key);
-        if (below == 0) below = partition_below(items, limit + 1, key); // the limit was the least of all
+        if (below == 0) below = partition_below(items, limit + 1, key); // the limit was the smallest key
         if (below <= left_count) {
             items = items.subspan(below);
             left_count -= below;
@@ -123,7 +123,7 @@ void split_at_longest_side(std::span<TreeItem> items, std::size_t left_count) {
         if (side(other) > side(axis)) axis = other;
 
     const std::uint32_t overlap_low = right_box.low[axis], overlap_high = left_box.high[axis];
-    if (overlap_high < overlap_low) return; // they lie as they should
+    if (overlap_high < overlap_low) return; // the halves are already separated
     const KeyAlong key(axis);
     if (overlap_high - overlap_low > side(axis) / 4) return select(items, left_count, key);
     // Items to the left of all items of the right half stay there, and likewise on the other side.
@@ -143,8 +143,8 @@ namespace {
 
 constexpr std::size_t kWidth = TreeNode::kWidth;
 
-/// In the units of a node, rounded outwards. Rounding keeps the order, so boxes of boxes are as tight as
-/// boxes of faces.
+/// A box in the units of a node, rounded outwards. Rounding preserves the order, so boxes of boxes are as
+/// tight as boxes of faces.
 struct NodeBox {
     std::int16_t low[3], high[3];
 
@@ -195,7 +195,7 @@ TreeNode empty_node() {
     return node;
 }
 
-/// Leaves that neighbouring children of a node are to hold, from child number `child` on.
+/// Leaves to be distributed among neighbouring children of a node, starting with child number `child`.
 struct Branch {
     std::size_t first_leaf, last_leaf; ///< half open
     std::size_t leaves_per_child;      ///< a power of kWidth; the last child may have fewer
@@ -211,7 +211,7 @@ std::size_t leaves_per_child_of(std::size_t leaf_count) {
     return leaves_per_child;
 }
 
-/// Nodes of a tree over so many leaves, a power of kWidth; none over a single leaf.
+/// The number of nodes of a tree with this many leaves, a power of kWidth; none for a single leaf.
 std::size_t nodes_of_full_tree(std::size_t leaf_count) {
     return (leaf_count - 1) / (kWidth - 1);
 }
@@ -248,17 +248,17 @@ class TreeBuilder {
 
     TreeItem item_of(std::uint32_t face) const {
         constexpr std::int64_t kPositive = 3 * (kLatticeExtent + 1);
-        LatticePoint sum{kPositive, kPositive, kPositive}; // thrice the centroid
+        LatticePoint sum{kPositive, kPositive, kPositive}; // three times the centroid
         for (std::uint32_t vertex : lattice_.faces[face]) sum += lattice_.vertices[vertex];
         return {{kept_as<std::uint32_t>(sum.x), kept_as<std::uint32_t>(sum.y), kept_as<std::uint32_t>(sum.z)},
                 face};
     }
 
-    /// Splits branches level by level until there are enough for all threads, then grows each on one.
+    /// Splits branches level by level until there are enough for all threads, then grows each on one thread.
     void grow() {
         const std::size_t enough = thread_count_ == 1 ? 1 : 8 * worker_count(thread_count_);
         std::vector<Branch> branches{branch_of_node(0, 0, leaf_count())};
-        std::vector<Branch> nodes; // of which a branch was made, and where their boxes go
+        std::vector<Branch> nodes; // those made from a branch, and where their boxes go
         for (bool done = false; branches.size() < enough && !done;) {
             done = true;
             std::vector<Branch> next;
@@ -306,7 +306,7 @@ class TreeBuilder {
         }
     }
 
-    /// The branch that holds all children of a new node.
+    /// The branch that contains all children of a new node.
     Branch branch_of_node(std::size_t node, std::size_t first_leaf, std::size_t last_leaf) {
         tree_.nodes[node] = empty_node();
         return {first_leaf, last_leaf, leaves_per_child_of(last_leaf - first_leaf), node, 0};
@@ -332,7 +332,7 @@ class TreeBuilder {
         return std::span(items_).subspan(first, last - first);
     }
 
-    /// Nodes are numbered depth first, and all children before the last are full. @returns the number
+    /// Nodes are numbered depth first, and all children except the last are full. @returns the node's number
     std::size_t add_child_node(const Branch& branch) {
         const std::size_t node = branch.node + 1 + branch.child * nodes_of_full_tree(branch.leaves_per_child);
         tree_.nodes[branch.node].children[branch.child] = kept_as<std::uint32_t>(node);
@@ -344,7 +344,7 @@ class TreeBuilder {
         set_box_of_child(node, branch.child, box_of_node(tree_.nodes[node.children[branch.child]]));
     }
 
-    /// Orders a leaf's faces by number: how they come out of the splits is arbitrary.
+    /// Orders a leaf's faces by number, since the splits leave them in arbitrary order.
     void add_leaf(const Branch& branch) {
         const std::span<TreeItem> items = items_of(branch);
         sort_by_face(items);

@@ -15,8 +15,9 @@ namespace echinus {
 namespace {
 
 constexpr int kUnit = ExactMapView::kBandUnit;
-constexpr double kTolerance = 1e-3;                               ///< of winding numbers
-constexpr double kMostChange = 0.5 - kCertainMargin - kTolerance; ///< within a region that is certain
+constexpr double kTolerance = 1e-3; ///< error of winding numbers
+constexpr double kMostChange =
+    0.5 - kCertainMargin - kTolerance; ///< the largest change within a region that counts as certain
 
 double distance_to_segment(const Vec3d& place, const Vec3d& a, const Vec3d& b) {
     const Vec3d ab = b - a;
@@ -24,10 +25,10 @@ double distance_to_segment(const Vec3d& place, const Vec3d& a, const Vec3d& b) {
     return length(place - a - ab * share);
 }
 
-/// How often gaps may be halved so that the distances looked at would stay below 10^8 if groups did not spare
+/// How often gaps may be halved so that fewer than 10^8 distances would be computed if groups did not save
 /// most of them: about a tenth of a second on one core.
 int affordable_halvings(std::size_t edge_count, std::size_t cell_count, int most) {
-    constexpr std::size_t kManyEdges = 200; // beside so many, little is found
+    constexpr std::size_t kManyEdges = 200; // with more border edges, few gaps are certain
     if (edge_count > kManyEdges) return GapStates::kNone;
     constexpr double kMostDistances = 1e8;
     constexpr double kGapsPerCell = 3;
@@ -43,10 +44,10 @@ int affordable_halvings(std::size_t edge_count, std::size_t cell_count, int most
 } // namespace
 
 /// A cell between two limits in band units, and the lattice point on the ray through the cell's middle, next
-/// to a given L1 norm, where the winding number is looked at.
+/// to a given L1 norm, at which the winding number is computed.
 struct GapStates::Region {
     LatticePoint place;
-    double reach; ///< no point of the region is farther from it
+    double reach; ///< no point of the region is farther from `place`
 
     Region(const OctahedralCells& cells, std::uint32_t cell, std::int32_t lower, std::int32_t upper,
            double norm)
@@ -57,8 +58,8 @@ struct GapStates::Region {
     }
 
   private:
-    /// A multiple of the first lattice point on the ray, as the middle is. Not the origin, from which rays
-    /// lead elsewhere.
+    /// A multiple of the first lattice point on the middle ray. Never the origin, from which rays run in
+    /// other directions.
     static LatticePoint place_on_middle(const OctahedralCells& cells, std::uint32_t cell, double norm) {
         const LatticePoint middle = cells.middle(cell);
         const std::int64_t first_norm = 3 * cells.divisions();
@@ -72,7 +73,7 @@ struct GapStates::Region {
 GapStates::GapStates(const ExactMapView& surface, const OctahedralCells& cells, int most_halvings)
     : surface_(surface), cells_(cells),
       max_depth_(surface.winding_tree->neighbours_disagree
-                     ? kNone // what is certain depends on more than the winding number
+                     ? kNone // certainty depends on more than the winding number
                      : affordable_halvings(surface.border.size(), cells.count(), most_halvings)) {
     if (max_depth_ == kNone) return;
     for (const BorderEdge& edge : surface.border) {
@@ -83,7 +84,7 @@ GapStates::GapStates(const ExactMapView& surface, const OctahedralCells& cells, 
     make_groups();
 }
 
-/// After each edge the nearest one of those that are left.
+/// Sorts the edges so that each is followed by the nearest of the remaining ones.
 void GapStates::put_neighbours_together() {
     for (std::size_t last = 0; last + 1 < edges_.size(); ++last) {
         const auto from_last = [end = edges_[last].b](const Edge& edge) { return length(edge.a - end); };
@@ -115,7 +116,7 @@ std::span<const GapStates::Edge> GapStates::edges_of(const Group& group) const {
 }
 
 double GapStates::largest_change(const Vec3d& place, double reach) const {
-    constexpr double kFar = 8; // radii; there a group is hardly nearer than its edges
+    constexpr double kFar = 8; // in radii; at this distance a group is hardly nearer than its edges
     const auto slope = [](double weight, double clearance) {
         return clearance > 0 ? weight / (clearance * clearance) : std::numeric_limits<double>::infinity();
     };
@@ -127,7 +128,7 @@ double GapStates::largest_change(const Vec3d& place, double reach) const {
         else
             for (const Edge& edge : edges_of(group))
                 sum += slope(edge.weight, distance_to_segment(place, edge.a, edge.b) - reach);
-        if (sum * reach > kMostChange) break; // enough to know
+        if (sum * reach > kMostChange) break; // the result is known to be too large
     }
     return sum * reach;
 }
@@ -180,8 +181,8 @@ void GapStates::append_halves(std::uint32_t cell, const Gap& gap, int depth,
 
 bool GapStates::certain_in_band(std::uint32_t cell, const Gap& below, std::int32_t upper) const {
     if (max_depth_ == kNone) return false;
-    const double norm =
-        kUnit * below.upper - 0.5 - 1.5 * cells_.divisions(); // rounds to the last place before
+    const double norm = kUnit * below.upper - 0.5 -
+                        1.5 * cells_.divisions(); // rounds to the last lattice point before the band
     const Region region(cells_, cell, below.upper, upper, norm);
     return winding_in(region, below) != ExactMapView::kUncertain;
 }

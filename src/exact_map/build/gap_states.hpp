@@ -12,27 +12,27 @@
 
 namespace echinus {
 
-/// A radial piece of a cell without faces, [lower, upper) in band units.
+/// A radial piece of a cell that contains no faces, [lower, upper) in band units.
 struct Gap {
     std::int32_t lower, upper;
-    int crossings; ///< signed, beyond it, on the ray through the cell's middle
+    int crossings; ///< signed crossings beyond the gap on the ray through the cell's middle
 };
 
-/// A piece of a gap, in which the winding number has one value or none that is certain.
+/// A piece of a gap, in which the winding number has one certain value or none.
 struct GapPiece {
-    std::uint16_t upper;  ///< where it ends, in band units
+    std::uint16_t upper;  ///< upper end, in band units
     std::int16_t winding; ///< or ExactMapView::kUncertain
 };
 
-/// Finds where the generalised winding number of an open surface stays clear of halves, by kCertainMargin.
+/// Finds where the generalised winding number of an open surface stays away from halves by kCertainMargin.
 ///
-/// Between crossings it is a smooth function whose slope the border bounds, edge by edge, by length over
-/// 4 pi distance^2 (the law of Biot and Savart: a solid angle is the potential of a current in its border).
-/// So from its value at one place, which is computed as queries do, its range in a convex region follows, if
-/// no border edge comes near.
+/// Between crossings it is a smooth function. The border bounds its slope: each edge contributes its length
+/// over 4 pi distance^2 (the law of Biot and Savart: a solid angle is the potential of a current along its
+/// border). So its value at one point, computed as by queries, determines its range in a convex region,
+/// provided that no border edge comes near.
 ///
-/// That takes time proportional to border edges times pieces, and work beyond a tenth of a second is skipped.
-/// Where the border is long, as that of a triangle soup, next to nothing would be found: there all gaps stay
+/// The time is proportional to border edges times pieces, and work beyond a tenth of a second is skipped. If
+/// the border is long, as that of a triangle soup, hardly any gap would be certain; then all gaps stay
 /// uncertain.
 class GapStates {
   public:
@@ -40,16 +40,15 @@ class GapStates {
     static constexpr int kNone = -1; ///< all gaps stay uncertain
 
     /// @param surface        open, with its winding tree
-    /// @param most_halvings  how often a gap may be halved, which makes 2^most_halvings pieces at most; or
-    /// kNone
+    /// @param most_halvings  how often a gap may be halved, into at most 2^most_halvings pieces; or kNone
     GapStates(const ExactMapView& surface, const OctahedralCells& cells, int most_halvings = kMostHalvings);
 
-    /// The pieces of a gap of a cell, from below; neighbours differ.
+    /// Appends the pieces of a gap of a cell, from below; neighbouring pieces differ.
     void append_pieces(std::uint32_t cell, const Gap& gap, std::vector<GapPiece>& pieces) const;
 
     /// Does the winding number within a band follow from that below it by counting crossings?
     /// @param below  the gap that ends where the band begins
-    /// @param upper  of the band
+    /// @param upper  where the band ends, in band units
     bool certain_in_band(std::uint32_t cell, const Gap& below, std::int32_t upper) const;
 
   private:
@@ -57,7 +56,7 @@ class GapStates {
         Vec3d a, b;
         double weight; ///< multiplicity times length over 4 pi
     };
-    /// Edges near each other.
+    /// Edges that are near each other.
     struct Group {
         Vec3d centre;
         double radius, weight;
@@ -70,19 +69,20 @@ class GapStates {
     void make_groups();
     std::span<const Edge> edges_of(const Group& group) const;
 
-    /// @param crossings  of faces beyond the place
+    /// @param crossings  the signed crossings with faces beyond the place
     std::optional<double> winding_at(const LatticePoint& place, int crossings) const;
-    /// @param gap  in which the region's place is to be
+    /// @param gap  the gap in which the region's place must lie
     std::int16_t winding_in(const Region& region, const Gap& gap) const;
     void append_halves(std::uint32_t cell, const Gap& gap, int depth, std::vector<GapPiece>& pieces) const;
-    /// How much the winding number can change within `reach` of a place; infinite where the border is near.
+    /// The most by which the winding number can change within `reach` of a place; infinite if the border is
+    /// near.
     double largest_change(const Vec3d& place, double reach) const;
 
     ExactMapView surface_;
     OctahedralCells cells_;
     std::vector<Edge> edges_;
     std::vector<Group> groups_;
-    int max_depth_; ///< how often a gap may be halved; negative when not even the first look can be afforded
+    int max_depth_; ///< how often a gap may be halved; negative if not even a first evaluation is affordable
 };
 
 } // namespace echinus

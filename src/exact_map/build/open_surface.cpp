@@ -22,13 +22,13 @@ namespace echinus {
 
 namespace {
 
-/// An edge seen from its lower vertex: how many more faces run away from it than towards it.
+/// An edge seen from its lower vertex, with the number of faces that run away from it minus those towards it.
 struct HalfEdge {
     std::uint32_t higher;
-    std::int32_t count; ///< a face has an edge but once, so that sums are at most kMostFaces
+    std::int32_t count; ///< a face has an edge only once, so that sums are at most kMostFaces
 };
 
-/// Adds up the half edges of one vertex by their other end, and appends what does not cancel.
+/// Sums the half edges of one vertex by their other endpoint, and appends those that do not cancel.
 void append_unbalanced(std::uint32_t lower, std::span<HalfEdge> half_edges, std::vector<BorderEdge>& border) {
     std::sort(half_edges.begin(), half_edges.end(),
               [](const HalfEdge& a, const HalfEdge& b) { return a.higher < b.higher; });
@@ -40,7 +40,7 @@ void append_unbalanced(std::uint32_t lower, std::span<HalfEdge> half_edges, std:
     }
 }
 
-/// [vertex_count] the first vertex on the same lattice point.
+/// [vertex_count] For each vertex, the first vertex at the same lattice point.
 std::vector<std::uint32_t> first_vertices_at(const std::vector<LatticePoint>& vertices) {
     const auto key = [&](std::uint32_t v) {
         return std::tuple(vertices[v].x, vertices[v].y, vertices[v].z, v);
@@ -56,7 +56,7 @@ std::vector<std::uint32_t> first_vertices_at(const std::vector<LatticePoint>& ve
     return first;
 }
 
-/// @param number  [vertex_count] of each vertex; vertices on one place have one number
+/// @param number  [vertex_count] a number for each vertex, the same for vertices at the same place
 std::vector<BorderEdge> unbalanced_edges(const LatticeMesh& lattice,
                                          const std::vector<std::uint32_t>& number) {
     const auto for_each_half_edge = [&](const auto& visit) {
@@ -75,7 +75,7 @@ std::vector<BorderEdge> unbalanced_edges(const LatticeMesh& lattice,
     std::vector<HalfEdge> half_edges(next.back());
     for_each_half_edge(
         [&](std::uint32_t lower, HalfEdge half_edge) { half_edges[next[lower]++] = half_edge; });
-    // Now next[v] is where the half edges of v end.
+    // Now next[v] is the end of the half edges of v.
     std::vector<BorderEdge> border;
     std::size_t first = 0;
     for (std::uint32_t lower = 0; lower < lattice.vertices.size(); ++lower) {
@@ -93,7 +93,7 @@ std::vector<BorderEdge> find_border(const LatticeMesh& lattice) {
 
 namespace {
 
-/// A face runs along it in this direction, and none against it.
+/// An edge along which a face runs in this direction and none against it.
 struct OpenEdge {
     std::uint32_t from, to;
 };
@@ -109,7 +109,7 @@ std::vector<OpenEdge> open_edges(std::span<const BorderEdge> border, std::size_t
     return result;
 }
 
-/// Follows edges, each once, and calls visit(loop) wherever the path meets itself, with the vertices of the
+/// Follows each edge once, and calls visit(loop) whenever the path meets itself, with the vertices of the
 /// loop that this closes.
 template <typename Visit>
 void for_each_loop(std::span<const OpenEdge> edges, std::size_t vertex_count, const Visit& visit) {
@@ -146,7 +146,8 @@ class LoopCap {
     LoopCap(std::span<const Vec3<std::int32_t>> vertices, std::vector<Triangle>& triangles)
         : vertices_(vertices), triangles_(triangles) {}
 
-    /// Closes a path by the edge between its ends. The triangles run against it, as they close the surface.
+    /// Fills the loop that a path and the edge between its endpoints form. The triangles run against it,
+    /// since they close the surface.
     void operator()(std::span<const std::uint32_t> path) const {
         if (path.size() < 3) return;
         const std::size_t middle = path.size() / 2;
@@ -176,12 +177,13 @@ std::vector<Triangle> cap_border(std::span<const BorderEdge> border,
 
 namespace {
 
-/// Moments of some faces about the centre of their area.
+/// Moments of some faces about their area-weighted centre.
 struct Moments {
     Vec3d centre;
-    Vec3d area;                    ///< vector
-    std::array<Vec3d, 3> first{};  ///< integral of the area vector times the offset along each axis
-    std::array<Vec3d, 6> second{}; ///< times products of two offsets: xx, yy, zz, xy, xz, yz
+    Vec3d area;                   ///< sum of the area vectors
+    std::array<Vec3d, 3> first{}; ///< integral of the area vector times the offset along each axis
+    std::array<Vec3d, 6>
+        second{}; ///< integral of the area vector times products of two offsets: xx, yy, zz, xy, xz, yz
     double total_area = 0, spread = 0, radius = 0;
     AlignedBox<double> box;
 };
@@ -233,8 +235,8 @@ Moments moments_of_leaf(const WindingTree& tree, std::span<const Vec3<std::int32
     return result;
 }
 
-/// All of some parts. The spread of each about its own centre grows by the squared distance, since that is
-/// the centre of its area.
+/// The moments of several parts together. The spread of each part about its own centre grows by the squared
+/// distance between the centres, weighted by area, since its own centre is the centre of its area.
 Moments joined(const std::array<Moments, TreeNode::kWidth>& parts, std::size_t count) {
     Moments result;
     Vec3d weighted;
@@ -263,17 +265,17 @@ Moments joined(const std::array<Moments, TreeNode::kWidth>& parts, std::size_t c
     return result;
 }
 
-/// The terms of order 1 and 2 are polynomials in r = (x, y, z), divided by r^5 and r^7:
+/// The terms of orders 1 and 2 are polynomials in r = (x, y, z), divided by r^5 and r^7:
 ///
 ///     -3 sum of F_ij r_i r_j + trace r^2,   15/2 sum of S_ijk r_i r_j r_k - 3/2 r^2 (2 F' + F'') r,
 ///
-/// with the moments F_ij of area i times offset j, and S_ijk with two offsets. Both are harmonic, so they are
-/// known without what their traces add: x^2, y^2, z^2 with coefficients that sum to 0, and of third degree
-/// the seven polynomials
+/// with the moments F_ij of area i times offset j, and S_ijk with two offsets. Both polynomials are harmonic,
+/// so the traces need not be stored: the first is a sum of x^2, y^2, z^2, xy, xz, yz in which the
+/// coefficients of the squares sum to 0, the second a sum of the seven polynomials
 ///
 ///     x (x^2 - 3 z^2), y (y^2 - 3 z^2), z (z^2 - 3 x^2), x (y^2 - z^2), y (x^2 - z^2), z (y^2 - x^2), xyz,
 ///
-/// found by taking away multiples of x r^2, y r^2 and z r^2, which are not harmonic.
+/// found by subtracting multiples of x r^2, y r^2 and z r^2, which are not harmonic.
 void store(const Moments& moments, std::size_t k, WindingNode& node) {
     constexpr double kPerSolidAngle = 1 / (4 * std::numbers::pi);
     const auto set = [&](double(&rows)[3][WindingNode::kWidth], const Vec3d& v) {
@@ -290,18 +292,20 @@ void store(const Moments& moments, std::size_t k, WindingNode& node) {
         x.x - third_of_trace, y.y - third_of_trace, z.z - third_of_trace, x.y + y.x, x.z + z.x, y.z + z.y};
     for (std::size_t i = 0; i < 6; ++i) node.first[i][k] = -3 * kPerSolidAngle * quadratic[i];
 
-    // Coefficients of the cubic form: x^3, y^3, z^3, then x y^2, x z^2, y x^2, y z^2, z x^2, z y^2, then xyz.
+    // Coefficients of the cubic form, in the order x^3, y^3, z^3, x y^2, x z^2, y x^2, y z^2, z x^2, z y^2,
+    // xyz.
     const auto& [xx, yy, zz, xy, xz, yz] = moments.second;
     const double xxx = xx.x, yyy = yy.y, zzz = zz.z;
     const double xyy = yy.x + 2 * xy.y, xzz = zz.x + 2 * xz.z, yxx = xx.y + 2 * xy.x, yzz = zz.y + 2 * yz.z,
                  zxx = xx.z + 2 * xz.x, zyy = yy.z + 2 * yz.y, xyz = 2 * (yz.x + xz.y + xy.z);
-    // Less l r^2 with the linear form l that leaves a harmonic form: that is a tenth of its Laplacian.
+    // Subtracts l r^2 with the linear form l that leaves a harmonic form: a tenth of the cubic form's
+    // Laplacian.
     const double lx = (3 * xxx + xyy + xzz) / 5, ly = (3 * yyy + yxx + yzz) / 5,
                  lz = (3 * zzz + zxx + zyy) / 5;
     const double cubic[7] = {xxx - lx, yyy - ly, zzz - lz, xyy - lx, yxx - ly, zyy - lz, xyz};
     for (std::size_t i = 0; i < 7; ++i) node.second[i][k] = 7.5 * kPerSolidAngle * cubic[i];
 
-    // Rounded up by more than all of the above is rounded.
+    // Rounded up by more than all rounding errors above.
     constexpr double kUp = 1 + 0x1p-30;
     node.radius[k] = moments.radius * kUp;
     node.spread[k] = moments.spread * (kPerSolidAngle * kUp);
@@ -319,7 +323,7 @@ std::vector<WindingNode> find_winding_nodes(const WindingTree& tree,
         std::array<Moments, TreeNode::kWidth> parts;
         std::size_t count = 0;
         for (std::size_t k = 0; k < TreeNode::kWidth; ++k) {
-            if (node.low[0][k] > node.high[0][k]) { // there is none: nothing, and far from everywhere
+            if (node.low[0][k] > node.high[0][k]) { // there is no such child: it counts as empty and far away
                 result[i].centre[0][k] = 1e30;
                 continue;
             }
@@ -338,10 +342,10 @@ std::vector<WindingNode> find_winding_nodes(const WindingTree& tree,
 
 namespace {
 
-/// Caps spare the sum over the faces but not the crossings of the place's ray.
+/// Caps save the sum over the faces but not the crossings of the place's ray.
 constexpr std::size_t kFewestFacesPerCap = 2;
 
-/// An edge along which several faces more run in one direction counts as often.
+/// Counts an edge once for each surplus face in one direction.
 std::size_t edge_count(const ExactMapView& map) {
     std::size_t count = 0;
     for (const BorderEdge& edge : map.border)
@@ -349,9 +353,9 @@ std::size_t edge_count(const ExactMapView& map) {
     return count;
 }
 
-/// How many of some triangles a sum has to take one by one, up to a factor: for each, the share of the
-/// bounding sphere that is not far from it as it is long. So a tube of long faces has many, and caps of its
-/// round ends few, although they have as many edges as it has faces.
+/// Up to a factor, how many triangles a sum has to evaluate one by one: for each, the share of the bounding
+/// sphere that is closer to it than about its own length. So this is large for a tube of long faces and small
+/// for caps of its round ends, although they have as many edges as the tube has faces.
 template <typename Corner>
 double count_nearby(const ExactMapView& map, std::size_t triangle_count, const Corner& corner) {
     double count = 0;
@@ -372,13 +376,13 @@ double count_nearby(const ExactMapView& map, const std::vector<Triangle>& caps) 
     return count_nearby(map, caps.size(), [&](std::size_t i) { return caps[i / 3][i % 3]; });
 }
 
-/// Triangles to sum instead of the faces; none where that would not be faster.
+/// Triangles to sum instead of the faces; none if that would not be faster.
 std::vector<Triangle> find_caps(const ExactMapView& map) {
     constexpr double kFewNearby = 8, kGain = 4;
     const std::size_t edges = edge_count(map);
     if (kFewestFacesPerCap * edges <= map.face_count()) return cap_border(map.border, map.vertices);
     if (edges > 3 * map.face_count())
-        return {}; // in a file, where nothing compares the border with the faces
+        return {}; // possible in a file, since nothing compares the border with the faces there
     const double faces_nearby = count_nearby_faces(map);
     if (faces_nearby < kFewNearby) return {};
     std::vector<Triangle> caps = cap_border(map.border, map.vertices);

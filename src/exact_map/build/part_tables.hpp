@@ -10,9 +10,9 @@
 /// Tables about the 16 parts of a cell, for covering cells by strips of parts.
 ///
 /// A row of parts across a square of two cells is a *strip* of eight triangles, in the order of the row:
-/// parts that are not turned at even places, turned ones at odd places. The first 7, 5, 3, 1 of rows 0 to 3
-/// belong to the *up* cell, the others to the *down* cell, which counts its own rows and parts from the other
-/// end.
+/// parts that are not turned have even numbers, turned ones odd numbers. In rows 0 to 3, the first 7, 5, 3
+/// and 1 belong to the *up* cell, the others to the *down* cell, which numbers its own rows and parts from
+/// the other end.
 namespace echinus {
 
 inline constexpr std::size_t kPartRows = OctahedralCells::kPartsPerSide;
@@ -20,8 +20,8 @@ inline constexpr int kStripLength = 2 * OctahedralCells::kPartsPerSide;
 /// The first part of each row.
 inline constexpr std::array<std::uint32_t, kPartRows> kRowBegin{0, 7, 12, 15};
 
-/// Parts touched in a strip to parts of the two cells: the up cell's in the lower 16 bits, the down cell's in
-/// the upper.
+/// Converts the touched triangles of a strip to parts of the two cells: those of the up cell are in the lower
+/// 16 bits, those of the down cell in the upper ones.
 inline constexpr auto kPartsOfStrip = [] {
     std::array<std::array<std::uint32_t, 1U << kStripLength>, kPartRows> table{};
     for (std::size_t row = 0; row < kPartRows; ++row)
@@ -37,7 +37,7 @@ inline constexpr auto kPartsOfStrip = [] {
     return table;
 }();
 
-/// Stands for a part where a row has none.
+/// Represents the part of a row that has none.
 inline constexpr std::uint8_t kNoPart = OctahedralCells::kPartCount;
 
 /// The first and the last part of each row in a set of parts, or kNoPart.
@@ -75,8 +75,8 @@ class RowEnds {
 
 inline constexpr RowEnds kRowEnds;
 
-/// Where the parts of an up cell have their origins, in widths of a part from the cell's, and which are
-/// turned: a column for each number, so that a loop over the parts becomes vector instructions.
+/// The origins of the parts of an up cell, in widths of a part and relative to the cell's origin, and which
+/// parts are turned. Each number has its own array, so that a loop over the parts is vectorised.
 struct PartPlaces {
     std::array<double, OctahedralCells::kPartCount> x{}, y{}, upright{}, turned{};
 

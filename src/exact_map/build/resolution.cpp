@@ -11,9 +11,10 @@ namespace echinus {
 
 namespace {
 
-/// Bytes of maps against their cells. They grow ever more slowly: each cell takes a few, each face's outline
-/// as many as it is long, hence with the square root of the cells, and its area with the cells. So a line
-/// through two points lies above what comes after them, and what it promises to fit does.
+/// The size of maps as a function of the number of cells. The function is concave: each cell takes a few
+/// bytes, each face's outline takes bytes in proportion to its length, hence to the square root of the number
+/// of cells, and the face's area in proportion to the number of cells. So extrapolating linearly from two
+/// points never underestimates a finer map, and a map predicted to fit does fit.
 class Growth {
   public:
     void add(std::uint32_t divisions, std::size_t byte_count) {
@@ -41,11 +42,11 @@ class Growth {
 } // namespace
 
 std::uint32_t default_divisions(std::size_t face_count, bool open) {
-    // Cells in the ratio of 4 to 5 to faces: then map and mesh share the memory evenly. Fewer cells make
-    // lists longer in proportion, more make them hardly shorter, as then each face lies in several cells.
+    // Four cells for five faces: map and mesh then take about the same memory. With fewer cells, lists are
+    // longer in proportion; with more, they are hardly shorter, since each face then lies in several cells.
     constexpr double kCellsPerFace = 0.8;
     const double divisions = std::sqrt(kCellsPerFace * static_cast<double>(face_count) / 8);
-    // The smaller a cell, the less the winding number changes in it: what is certain depends on this.
+    // The smaller a cell, the less the winding number changes in it, and the more of it is certain.
     const std::uint32_t least = open ? 20 : 4;
     return std::clamp(truncated_to<std::uint32_t>(std::round(divisions)), least,
                       ExactMapOptions::kMaxDivisions);
@@ -58,7 +59,7 @@ std::size_t default_byte_limit(std::size_t face_count, std::size_t vertex_count)
 }
 
 std::uint32_t most_useful_divisions(std::size_t face_count, bool open) {
-    // Sixteen times as many cells as by default: nearly every band holds two or three faces.
+    // Sixteen times the default number of cells: nearly every band then holds two or three faces.
     const std::uint32_t usual = default_divisions(face_count, open);
     return open ? usual : std::min(4 * usual, ExactMapOptions::kMaxDivisions);
 }

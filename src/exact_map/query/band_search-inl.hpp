@@ -1,4 +1,4 @@
-// Included once for each instruction set, as Highway wants it: no guard against a second time.
+// Included once per instruction set, as Highway requires; hence the unusual include guard.
 #if defined(ECHINUS_BAND_SEARCH_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef ECHINUS_BAND_SEARCH_INL
 #undef ECHINUS_BAND_SEARCH_INL
@@ -17,23 +17,23 @@
 #include <cstdint>
 #include <span>
 
-#if HWY_TARGET != HWY_SCALAR // where the reference is used instead
+#if HWY_TARGET != HWY_SCALAR // HWY_SCALAR uses the reference instead
 HWY_BEFORE_NAMESPACE();
 namespace echinus::HWY_NAMESPACE {
 
-/// Where particles are, in single precision.
+/// Where particles lie, computed in single precision.
 struct CellLanes {
-    FloatLanes l1; ///< the L1 norm in lattice steps; that of the snapped particle is within kL1Error of it
+    FloatLanes l1;       ///< L1 norm in lattice steps; that of the snapped particle is within kL1Error of it
     FloatLanes farthest; ///< the largest coordinate, in lattice steps
-    IntLanes cell; ///< below 2^21 where it is sure; elsewhere any number: conversions saturate, products wrap
-    FloatMask sure; ///< the snapped particle surely lies in that cell
+    IntLanes cell;       ///< below 2^21 if sure, otherwise any number: conversions saturate, products wrap
+    FloatMask sure;      ///< the snapped particle certainly lies in that cell
 
     static constexpr float kL1Error = 2;
 };
 
-/// LatticeFrame::to_lattice() and OctahedralCells::locate(), but for rounding: a difference, the inverse of a
-/// step and their product are rounded, by 2^-24 of at most 2^19 each; together less than 1/8 of a step.
-/// Snapping moves it by another 1/2.
+/// LatticeFrame::to_lattice() and OctahedralCells::locate(), except for rounding: a difference, the inverse
+/// of a step and their product are each rounded by 2^-24 of at most 2^19, together by less than 1/8 of a
+/// step. Snapping moves the particle by up to 1/2 more.
 class LocateLanes {
   public:
     LocateLanes(const Vec3f& centre, const LatticeFrame& frame, std::uint32_t divisions)
@@ -55,8 +55,8 @@ class LocateLanes {
         const FloatLanes rest_x = hn::Sub(along_x, hn::ConvertTo(f, row));
         const FloatLanes rest_y = hn::Sub(along_y, hn::ConvertTo(f, column));
         const FloatLanes rest = hn::Add(rest_x, rest_y);
-        // Of n times a share of the norm: both of them are off by less than 2 steps, and there are 4
-        // roundings.
+        // The error of n times a share of the norm: numerator and denominator are each off by less than 2
+        // steps, and there are 4 roundings.
         const FloatLanes slack =
             hn::MulAdd(hn::Set(f, 4), cells_per_step, hn::Set(f, static_cast<float>(n_) * 0x1p-21F));
         const FloatLanes one = hn::Set(f, 1);
@@ -64,7 +64,7 @@ class LocateLanes {
             hn::Min(hn::Min(hn::Min(rest_x, rest_y), hn::Sub(one, hn::Max(rest_x, rest_y))),
                     hn::Abs(hn::Sub(rest, one)));
 
-        // index(), in which `down` is 1: as a number, a mask is 0 or -1.
+        // index(), in which `down` is 1; as a number, a mask is 0 or -1.
         const IntLanes minus_down = hn::BitCast(i, hn::VecFromMask(f, hn::Gt(rest, one)));
         const IntLanes before_row = hn::Mul(row, hn::Sub(hn::Set(i, 2 * n_), row));
         const IntLanes in_octant = hn::Sub(hn::Add(before_row, hn::Add(column, column)), minus_down);
@@ -91,8 +91,8 @@ class LocateLanes {
     std::int32_t n_;
 };
 
-/// LatticeFrame::to_lattice() and rounded(), in the same arithmetic: whole numbers. What is not on the
-/// lattice goes to 2^20.
+/// LatticeFrame::to_lattice() and rounded() with the same arithmetic; the results are whole numbers. Points
+/// beyond the lattice are moved to 2^20.
 class SnapLanes {
   public:
     explicit SnapLanes(const LatticeFrame& frame) : frame_(frame) {}
@@ -122,14 +122,15 @@ class SnapLanes {
     LatticeFrame frame_;
 };
 
-/// Parts of cells in which particles on the lattice lie, a bit each, as of ExactMapView::reference_parts.
+/// The parts of their cells in which particles on the lattice lie, one bit each, as in
+/// ExactMapView::reference_parts.
 class PartLanes {
   public:
     explicit PartLanes(std::uint32_t divisions)
         : fine_n_(static_cast<float>(OctahedralCells::kPartsPerSide * divisions)) {}
 
-    /// All of them for a particle that is so close to a wall that rounding may decide, and for the origin,
-    /// whose quotients are NaN. Else row and column are below 2^11.
+    /// All parts for a particle so close to a wall that rounding might decide, and for the origin, whose
+    /// quotients are NaN. For all others row and column are below 2^11.
     IntLanes operator()(const PointLanes& p) const {
         constexpr Floats f;
         constexpr Ints i;
@@ -149,7 +150,7 @@ class PartLanes {
         const IntLanes three = hn::Set(i, OctahedralCells::kPartsPerSide - 1);
         const IntLanes minus_down = hn::BitCast(i, hn::VecFromMask(f, hn::Gt(rest, one)));
         const IntLanes part_row = hn::And(row, three), part_column = hn::And(column, three);
-        // A cell that is down counts from the other end.
+        // A down cell is numbered from the other end.
         const IntLanes turned =
             hn::VecFromMask(i, hn::Gt(hn::Sub(hn::Add(part_row, part_column), minus_down), three));
         const IntLanes flip = hn::And(turned, three);
@@ -165,14 +166,14 @@ class PartLanes {
     float fine_n_;
 };
 
-/// Some particles of a piece of a batch, each with a band. Written a whole vector at a time, of which only
-/// the first few lanes count.
+/// Some particles of a piece of a batch, each with a band. Stores write a whole vector, of which only the
+/// first few lanes count.
 struct BandGroup {
-    static constexpr std::size_t kCapacity = 512; ///< particles of a piece
+    static constexpr std::size_t kCapacity = 512; ///< particles per piece
     static constexpr std::size_t kMargin = 16;    ///< lanes of the widest vector
 
     std::size_t size = 0;
-    alignas(64) std::array<std::int32_t, kCapacity + kMargin> slots; ///< numbers in the piece
+    alignas(64) std::array<std::int32_t, kCapacity + kMargin> slots; ///< the particles' indices in the piece
     alignas(64) std::array<std::int32_t, kCapacity + kMargin> bands;
 
     void add(IntMask mask, IntLanes slot, IntLanes band) {
@@ -184,23 +185,24 @@ struct BandGroup {
     }
 };
 
-/// Finds the gaps or bands of particles, as many at once as there are lanes.
+/// Finds the gaps or bands of as many particles at once as there are lanes.
 ///
-/// Numbers that belong to a cell or a band are fetched by loads in a loop of their own, and not by
-/// instructions that gather: these are slower on many processors.
+/// Values of a cell or a band are fetched by scalar loads in a separate loop rather than by gather
+/// instructions, which are slower on many processors.
 class BandSearch {
   public:
     explicit BandSearch(const ExactMapView& map) : map_(map) {}
 
-    BandGroup in_bands;              ///< with their bands
-    std::size_t outermost_count = 0; ///< this many of in_bands, the first, are in the outermost of their cell
-    BandGroup in_gaps;               ///< with the band beyond the gap; not those beyond all bands
-    /// Slots of particles that may be in one or the other, some perhaps twice; with an open surface also
+    BandGroup in_bands; ///< the particles in bands, with their bands
+    std::size_t outermost_count =
+        0;             ///< the first so many of in_bands are in the outermost band of their cell
+    BandGroup in_gaps; ///< particles in gaps, with the band beyond the gap; without those beyond all bands
+    /// The slots of particles that may be in a gap or a band, some perhaps twice; for an open surface also of
     /// those beyond all bands.
     std::span<const std::int32_t> unsure() const { return {unsure_.data(), unsure_count_}; }
 
-    /// @param points  local: whole vectors, at most BandGroup::kCapacity. A particle's slot is its number
-    /// there
+    /// @param points  local positions: whole vectors, at most BandGroup::kCapacity points. A particle's slot
+    ///                is its index in them
     void find(const StridedSpan<const Vec3f>& points) {
         in_bands.size = in_gaps.size = below_.size = unsure_count_ = 0;
         locate(points);
@@ -212,9 +214,9 @@ class BandSearch {
   private:
     static constexpr float kSurelyOnLattice = static_cast<float>(kLatticeExtent) - 1;
     static constexpr float kSurelyBeyondLattice = static_cast<float>(kLatticeExtent) + 2;
-    /// An L1 norm beyond any place in the bounding sphere.
+    /// An L1 norm greater than that of any point in the bounding sphere.
     static constexpr float kBeyondSphere = 1.75F * static_cast<float>(kLatticeExtent);
-    /// One that no band reaches to, whatever its 16 bits say.
+    /// An L1 norm that no band reaches, whatever its 16 bits are.
     static constexpr float kBeyondBands = 2.0F * (UINT16_MAX + 1) * ExactMapView::kBandUnit;
     template <typename T>
     using Column = std::array<T, BandGroup::kCapacity>;
@@ -230,8 +232,8 @@ class BandSearch {
 
     static IntLanes slots_from(std::size_t slot) { return hn::Iota(Ints(), static_cast<std::int32_t>(slot)); }
 
-    /// The points of as many particles as there are lanes.
-    /// @param is_packed  the points lie one after the other, without a gap
+    /// Loads as many points as there are lanes.
+    /// @param is_packed  the points are contiguous
     static PointLanes load(const StridedSpan<const Vec3f>& points, std::size_t first, bool is_packed) {
         constexpr Floats f;
         if (is_packed) {
@@ -259,14 +261,14 @@ class BandSearch {
             const FloatMask located = hn::And(at.sure, on_lattice);
             hn::Store(hn::IfThenElse(located, at.l1, hn::Set(f, kBeyondBands)), f, &l1_[slot]);
             hn::Store(hn::IfThenElseZero(hn::RebindMask(i, located), at.cell), i, &cells_[slot]);
-            if (is_open_) continue; // a particle that is not located then counts as beyond all bands
+            if (is_open_) continue; // a particle that was not located then counts as beyond all bands
             const FloatMask far = hn::Or(hn::Ge(at.l1, hn::Set(f, kBeyondSphere)),
                                          hn::Gt(at.farthest, hn::Set(f, kSurelyBeyondLattice)));
             leave_unsure(slots_from(slot), hn::RebindMask(i, hn::Not(hn::Or(located, far))));
         }
     }
 
-    /// Of a band, in lattice steps.
+    /// The limits of a band, in lattice steps.
     struct Limits {
         FloatLanes lower, upper;
     };
@@ -280,13 +282,13 @@ class BandSearch {
                 hn::Mul(hn::ConvertTo(f, hn::BitCast(i, upper)), unit)};
     }
 
-    /// Both limits of a band in one number, as limits() takes them.
+    /// Packs both limits of a band into one number, as limits() expects them.
     std::int32_t limits_of(std::uint32_t band) const {
         const Band& limits = map_.bands[band];
         return static_cast<std::int32_t>(std::uint32_t{limits.upper} << 16 | limits.lower);
     }
 
-    /// Is a particle surely on one side of a limit?
+    /// Is a particle certainly on one side of a limit?
     static IntMask surely_beyond(FloatLanes l1, FloatLanes limit) {
         return hn::RebindMask(Ints(), hn::Ge(l1, hn::Add(limit, hn::Set(Floats(), CellLanes::kL1Error))));
     }
@@ -294,7 +296,7 @@ class BandSearch {
         return hn::RebindMask(Ints(), hn::Lt(l1, hn::Sub(limit, hn::Set(Floats(), CellLanes::kL1Error))));
     }
 
-    /// Most particles are beyond all bands of their cell, and need only the outer limit of the last.
+    /// Most particles are beyond all bands of their cell, so the outer limit of the last band suffices.
     void compare_with_outer_limits(std::size_t count) {
         constexpr Ints i;
         for (std::size_t slot = 0; slot < count; ++slot)
@@ -306,7 +308,7 @@ class BandSearch {
             const IntMask beyond = surely_beyond(l1, limit);
             if (is_open_) [[unlikely]]
                 leave_unsure(slots_from(slot), beyond);
-            // With the cell for the moment: its bands are looked up next. No such particle is in a cell
+            // Stored with the cell for now; its bands are looked up next. No such particle is in a cell
             // without bands, since the cell of a particle less than kL1Error from the centre is not sure.
             below_.add(hn::Not(beyond), slots_from(slot), hn::Load(i, &cells_[slot]));
         }
@@ -321,7 +323,7 @@ class BandSearch {
             const auto cell = static_cast<std::size_t>(below_.bands[k]);
             const std::uint32_t band = map_.band_offsets[cell + 1] - 1;
             first_bands_[slot] = static_cast<std::int32_t>(map_.band_offsets[cell]);
-            bands_[k] = static_cast<std::int32_t>(band); // below 2^31, as a build sees to
+            bands_[k] = static_cast<std::int32_t>(band); // below 2^31, as the build ensures
             limits_[k] = limits_of(band);
             inner_l1_[k] = l1_[slot];
         }
@@ -340,7 +342,7 @@ class BandSearch {
         outermost_count = in_bands.size;
     }
 
-    /// Compares the particles below a band with the next one inwards, until none is left.
+    /// Compares the particles below a band with the next band inwards, until none is left.
     void compare_with_inner() {
         constexpr Floats f;
         constexpr Ints i;
@@ -354,7 +356,7 @@ class BandSearch {
                 bands_[k] = band;
                 limits_[k] = innermost ? 0 : limits_of(static_cast<std::uint32_t>(band));
             }
-            below_.size = 0; // what is added lies before what is read
+            below_.size = 0; // results are written before the entries that are still to be read
             for (std::size_t k = 0; k < count; k += hn::Lanes(i)) {
                 const IntMask valid = hn::FirstN(i, count - k);
                 const IntLanes slots = hn::Load(i, &below_.slots[k]), above = hn::Load(i, &below_.bands[k]);
@@ -377,7 +379,7 @@ class BandSearch {
 
     alignas(64) Column<float> l1_, inner_l1_;
     alignas(64) Column<std::int32_t> cells_, first_bands_, bands_, limits_;
-    BandGroup below_; ///< a limit that they were compared with
+    BandGroup below_; ///< particles below the limit that they were last compared with
     std::array<std::int32_t, 2 * BandGroup::kCapacity + BandGroup::kMargin> unsure_;
     std::size_t unsure_count_ = 0;
 };

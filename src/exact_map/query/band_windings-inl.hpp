@@ -1,4 +1,4 @@
-// Included once for each instruction set, as Highway wants it: no guard against a second time.
+// Included once per instruction set, as Highway requires; hence the unusual include guard.
 #if defined(ECHINUS_BAND_WINDINGS_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef ECHINUS_BAND_WINDINGS_INL
 #undef ECHINUS_BAND_WINDINGS_INL
@@ -21,30 +21,32 @@
 #include <cstring>
 #include <span>
 
-#if HWY_TARGET != HWY_SCALAR // where the reference is used instead
+#if HWY_TARGET != HWY_SCALAR // HWY_SCALAR uses the reference instead
 HWY_BEFORE_NAMESPACE();
 namespace echinus::HWY_NAMESPACE {
 
-/// How faces count for particles, one pair per lane.
+/// How faces count for particles: one pair of a face and a particle per lane.
 template <typename D>
 struct CrossingLanes {
-    hn::Vec<hn::RebindToSigned<D>> crossing; ///< as crossing_on() has it, where sure
+    hn::Vec<hn::RebindToSigned<D>> crossing; ///< the result of crossing_on(), if sure
     hn::Mask<D> unsure;
 };
 
-/// A filter in single precision for crossing_on().
+/// A single-precision filter for crossing_on().
 ///
-/// With corners a, b, c counted from the particle p, the ray from the origin through p passes an edge (a, b)
+/// With corners a, b, c relative to the particle p, the ray from the origin through p passes an edge (a, b)
 /// on the side given by the sign of p . (a x b), and p lies on the side of the plane given by the sign of a .
-/// (b x c); added to the sum of the former, that is the volume as seen from the origin.
+/// (b x c). Adding the latter to the sum of the former for all edges gives the volume as seen from the
+/// origin.
 ///
 /// Corners are exact here: differences of whole numbers up to 2^19. With m^2 the largest of |a|^2, |b|^2,
 /// |c|^2 and u = 2^-24, each component of a x b is off by at most 4 u m^2, and its product with a vector v by
 /// at most 10 u |v| m^2 in the L1 norm, which is at most 3 * 2^19 for p and 3 * 2^20 for a: less than m^2 and
-/// 2 m^2. So three edges and the volume: less than 5 m^2, and a little for their sum. Three times as much is
-/// allowed for.
-/// @param f       of the lanes
-/// @param before  with its sign bit set, crossings between the origin and p are wanted; else those from p on
+/// 2 m^2. The error of three edges and the volume together is thus less than 5 m^2, plus a little for their
+/// sum. The filter allows for three times as much.
+/// @param f       the tag of the lanes
+/// @param before  if its sign bit is set, crossings between the origin and p are wanted; otherwise those
+///                beyond p
 template <typename D, typename Lanes>
 HWY_INLINE CrossingLanes<D> crossings_of(D f, const Vec3Lanes<Lanes>& a, const Vec3Lanes<Lanes>& b,
                                          const Vec3Lanes<Lanes>& c, const Vec3Lanes<Lanes>& p,
@@ -58,12 +60,12 @@ HWY_INLINE CrossingLanes<D> crossings_of(D f, const Vec3Lanes<Lanes>& a, const V
     const Lanes bound =
         hn::Mul(hn::Max(hn::Max(fused_dot(a, a), fused_dot(b, b)), fused_dot(c, c)), hn::Set(f, 16));
 
-    // All of one sign, and by how much; negative where the signs differ.
+    // The least absolute value if all have the same sign; negative if their signs differ.
     const Lanes least = hn::Min(hn::Min(past_ab, past_bc), past_ca);
     const Lanes most = hn::Max(hn::Max(past_ab, past_bc), past_ca);
     const Lanes hit = hn::Max(least, hn::Neg(most));
-    // Where it is hit, from its front with sign +: the plane lies ahead of p where the first is positive,
-    // behind the origin where the second is negative.
+    // If the face is hit from its front, the sign is +. The plane lies ahead of p if the first value is
+    // positive, and behind the origin if the second is negative.
     const Lanes sign_bit = hn::SignBit(f);
     const Lanes side = hn::And(past_ab, sign_bit);
     const Lanes ahead = hn::Xor(volume, side);
@@ -76,11 +78,11 @@ HWY_INLINE CrossingLanes<D> crossings_of(D f, const Vec3Lanes<Lanes>& a, const V
     return {hn::IfThenElseZero(hn::RebindMask(i, counts), sign), unsure};
 }
 
-/// Crossings of one place's ray with the faces of its band, which are the lanes.
+/// Crossings of one point's ray with the faces of its band; the lanes are faces.
 template <typename Face, typename Vertex>
 class BandOfOne {
   public:
-    /// @param references, corners  those of the map, in their width
+    /// @param references, corners  the arrays of the map, with the width that they are stored in
     BandOfOne(const ExactMapView& map, const Face* references, const Vertex* corners, const LatticePoint& p)
         : map_(map), references_(references), corners_(corners), p_(p) {}
 
@@ -91,7 +93,7 @@ class BandOfOne {
         int sum = 0;
         for (std::uint32_t begin = first; begin < last; begin += kPieceSize) {
             const std::uint32_t end = std::min(begin + kPieceSize, last);
-            std::uint32_t count = 0; // of the faces that touch the part; listed without a branch
+            std::uint32_t count = 0; // number of faces that touch the part; they are listed without a branch
             for (std::uint32_t r = begin; r < end; ++r) {
                 faces[count] = references_[r];
                 count += std::uint32_t{map_.reference_parts[r]} >> at.part & 1U;
@@ -144,7 +146,7 @@ class BandOfOne {
         constexpr Eight f;
         const std::int32_t* vertices = &map_.vertices.data()->x;
         const Vertex* corners = corners_ + k;
-        // The vertex as the last three numbers of a row.
+        // Loads the vertex as the last three numbers of a row.
         const auto [before, x, y, z] =
             load_rows(hn::RebindToSigned<Eight>(), [=](std::size_t lane) HWY_ATTR {
                 const std::size_t vertex = corners[3 * std::size_t{faces[lane]}];
@@ -159,7 +161,7 @@ class BandOfOne {
     LatticePoint p_;
 };
 
-/// winding_in_bands() of a place of the lattice.
+/// winding_in_bands() of a lattice point.
 HWY_INLINE int winding_of_one(const ExactMapView& map, const PlaceInBands& at, const LatticePoint& p) {
     const auto by = [&](const auto* references, const auto* corners) {
         return winding_in_bands(map, at, BandOfOne(map, references, corners, p));
@@ -178,14 +180,15 @@ HWY_INLINE int winding_of_one(const ExactMapView& map, const PlaceInBands& at, c
 /// particle and a face are listed first, for many particles, and then tested, one pair to a lane.
 class BandWindings {
   public:
-    /// Replaces a winding number that is left to the scalar query.
+    /// Marks a winding number that is left to the scalar query.
     static constexpr std::int32_t kUnsettled = INT32_MAX;
 
     explicit BandWindings(const ExactMapView& map) : map_(map) {}
 
     /// The winding number around each particle of a group, or kUnsettled. Valid until the next call.
-    /// @param group   bands of particles; of the first `outermost_count` they are the last of their cells
-    /// @param points  local, by slot
+    /// @param group   particles with their bands; for the first `outermost_count`, these are the last of
+    ///               their cells
+    /// @param points  local positions, by slot
     std::span<const std::int32_t> find(const BandGroup& group, std::size_t outermost_count,
                                        const StridedSpan<const Vec3f>& points) {
         place(group, points);
@@ -206,7 +209,7 @@ class BandWindings {
   private:
     static constexpr std::uint32_t kLanes = hn::MaxLanes(Ints());
     static constexpr std::size_t kMargin = 2 * BandGroup::kMargin;
-    static constexpr std::size_t kPairCapacity = 8 * BandGroup::kCapacity; // twice what is usual
+    static constexpr std::size_t kPairCapacity = 8 * BandGroup::kCapacity; // twice the usual number
     static constexpr std::uint32_t kBefore = 0x8000'0000;
 
     template <typename T>
@@ -214,12 +217,12 @@ class BandWindings {
 
     /// A particle's sum of crossings.
     struct Sum {
-        std::int32_t winding; ///< beyond the faces, or before them; or kUnsettled
-        std::int32_t sign;    ///< -1 where crossings count between the origin and the particle
+        std::int32_t winding; ///< beyond the faces or before them, or kUnsettled
+        std::int32_t sign;    ///< -1 if crossings count between the origin and the particle
         std::size_t last_pair;
     };
 
-    /// Snaps particles to the lattice and finds the parts of their cells that they are in.
+    /// Snaps particles to the lattice and finds the parts of their cells in which they lie.
     void place(const BandGroup& group, const StridedSpan<const Vec3f>& points) {
         constexpr Floats f;
         for (std::size_t k = 0; k < group.size; ++k) {
@@ -237,7 +240,7 @@ class BandWindings {
         }
     }
 
-    /// Lists the faces that touch the particles' parts, for particles from the first on.
+    /// Lists the faces that touch the particles' parts, starting with particle `first`.
     /// @returns the first particle whose faces no longer fit, or last
     template <bool kOutermost>
     std::size_t list_pairs(const BandGroup& group, std::size_t first, std::size_t last) {
@@ -259,10 +262,10 @@ class BandWindings {
             if constexpr (!kOutermost) {
                 const std::int32_t beyond = winding_below[band + 1], below = winding_below[band];
                 before = beyond == ExactMapView::kSplit ? -1 : 0;
-                winding = beyond ^ ((beyond ^ below) & before); // without a branch
+                winding = beyond ^ ((beyond ^ below) & before); // selects without a branch
             }
             const bool left_out = (winding == ExactMapView::kUncertain) | (end - begin > kPairCapacity) |
-                                  (end + kMargin > reference_count); // beyond lists is read, too
+                                  (end + kMargin > reference_count); // loads may also read beyond the lists
             if (left_out) [[unlikely]] {
                 sums_[k] = {kUnsettled, 1, pair_count_};
                 continue;
@@ -293,7 +296,7 @@ class BandWindings {
             pair_count += compress.count();
         };
         std::size_t first = pair_count;
-        // Twice in any case: few lists are longer, and a branch less is mispredicted less.
+        // Always runs twice: few lists are longer, and one branch fewer means fewer mispredictions.
         do {
             add(begin);
             add(begin + kLanes);
@@ -306,7 +309,7 @@ class BandWindings {
         return pair_count;
     }
 
-    /// Sets the winding numbers of particles [first, last), whose pairs are tested.
+    /// Sets the winding numbers of particles [first, last), whose pairs have been tested.
     HWY_INLINE void add_up(std::size_t first, std::size_t last) {
         std::size_t pair = 0;
         for (std::size_t k = first; k < last; ++k) {
@@ -330,7 +333,7 @@ class BandWindings {
         constexpr Ints i;
         constexpr hn::Rebind<std::uint8_t, Ints> bytes;
         if (pair_count_ == 0) return;
-        // The last vector is filled up with what does no harm.
+        // Fills the last vector with pairs that do no harm.
         hn::StoreU(hn::Zero(i), i, &pair_corners_[pair_count_]);
         hn::StoreU(hn::Set(i, pair_particles_[pair_count_ - 1]), i, &pair_particles_[pair_count_]);
         for (std::size_t first = 0; first < pair_count_; first += hn::Lanes(i)) {
@@ -346,8 +349,8 @@ class BandWindings {
         }
     }
 
-    /// The particles of a vector of pairs. They are in order, and few have no pair: so they nearly always lie
-    /// within a vector's length.
+    /// The particles of a vector of pairs. Pairs are in the order of the particles, few of which have none,
+    /// so their particles nearly always lie within the length of a vector.
     HWY_INLINE PointLanes places_of(std::size_t first_pair, IntLanes numbers) const {
         constexpr Floats f;
         constexpr Ints i;
@@ -375,15 +378,15 @@ class BandWindings {
         return {hn::Load(f, rows[0].data()), hn::Load(f, rows[1].data()), hn::Load(f, rows[2].data())};
     }
 
-    /// A corner of the faces of a vector of pairs, counted from the particles.
-    /// @param corners  that corner of face 0
+    /// A corner of the faces of a vector of pairs, relative to the particles.
+    /// @param corners  the same corner of face 0
     template <typename Vertex>
     HWY_INLINE PointLanes corner_from_p(const Vertex* corners, std::size_t first_pair,
                                         const PointLanes& p) const {
         constexpr Floats f;
         const std::int32_t* corner_of = &pair_corners_[first_pair];
         const std::int32_t* vertices = &map_.vertices.data()->x;
-        // The vertex as the last three numbers of a row.
+        // Loads the vertex as the last three numbers of a row.
         const auto [before, x, y, z] =
             load_rows(Ints(), [=](std::size_t lane) HWY_ATTR {
                 const std::size_t vertex = corners[static_cast<std::uint32_t>(corner_of[lane])];
@@ -393,7 +396,7 @@ class BandWindings {
                 hn::Sub(hn::ConvertTo(f, z), p.z)};
     }
 
-    /// Decides pairs by integers.
+    /// Decides pairs with integer arithmetic.
     HWY_NOINLINE void decide(std::size_t first, FloatMask unsure) {
         constexpr Ints i;
         alignas(64) std::array<std::int32_t, BandGroup::kMargin> lanes;
@@ -411,7 +414,8 @@ class BandWindings {
         }
     }
 
-    /// Eight at a time: times a number of eight ones, the highest digit to base 256 is the sum of all digits.
+    /// Sums eight numbers at a time: in the product with a number of eight ones, the highest digit to base
+    /// 256 is the sum of all digits.
     std::int32_t sum_of(std::size_t first, std::size_t count) const {
         auto sum = -static_cast<std::int32_t>(count);
         for (;; first += 8, count -= 8) {
@@ -428,14 +432,16 @@ class BandWindings {
     SnapLanes snap_{frame_of(map_)};
     PartLanes parts_of_{map_.divisions};
 
-    // By number in the group.
-    alignas(64) Column<float> x_, y_, z_;    ///< on the lattice
-    alignas(64) Column<std::int32_t> parts_; ///< of its cell, which may hold the particle: a bit each
+    // Indexed by a particle's number in the group.
+    alignas(64) Column<float> x_, y_, z_;    ///< position on the lattice
+    alignas(64) Column<std::int32_t> parts_; ///< parts of the cell that may hold the particle, one bit each
     std::array<std::int32_t, BandGroup::kCapacity> windings_;
     std::array<Sum, BandGroup::kCapacity> sums_;
     std::size_t pair_count_ = 0;
-    alignas(64) std::array<std::int32_t, kPairCapacity + kMargin> pair_corners_;   ///< the first of each face
-    alignas(64) std::array<std::int32_t, kPairCapacity + kMargin> pair_particles_; ///< perhaps with kBefore
+    alignas(64)
+        std::array<std::int32_t, kPairCapacity + kMargin> pair_corners_; ///< the first corner of each face
+    alignas(64) std::array<std::int32_t, kPairCapacity + kMargin> pair_particles_; ///< the particle's number,
+                                                                                   ///< with kBefore if set
     alignas(64) std::array<std::uint8_t, kPairCapacity + kMargin> raised_crossings_; ///< crossing_on() + 1
 };
 

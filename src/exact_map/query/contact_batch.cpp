@@ -1,5 +1,5 @@
 // Three passes: the sides of all particles; the nearest faces of those that need one, in an order that keeps
-// neighbours together where there are many; and the contacts with these faces.
+// neighbours together if there are many; and the contacts with these faces.
 
 #include "exact_map/query/contact_search.hpp"
 #include "exact_map/query/nearest.hpp"
@@ -16,7 +16,7 @@
 #define HWY_TARGET_INCLUDE "exact_map/query/contact_batch.cpp"
 #include <hwy/foreach_target.h>
 
-// After foreach_target.h, which includes this file once for each instruction set.
+// Must follow foreach_target.h, which includes this file once per instruction set.
 #include "geometry/whole_numbers.hpp"
 #include "simd/dispatch.hpp"
 #include "simd/lanes-inl.hpp"
@@ -29,7 +29,7 @@ namespace echinus {
 #define ECHINUS_CONTACT_BLOCK
 namespace {
 
-/// Some particles that need contacts.
+/// A block of particles that need contacts.
 struct ContactBlock {
     static constexpr std::size_t kCapacity = 256;
 
@@ -134,7 +134,7 @@ class ContactLanes {
         }
     }
 
-    /// The point of a segment that is nearest to the origin, as a share of the way.
+    /// The point of a segment that is nearest to the origin, as a fraction of the segment.
     static DoubleLanes nearest_share(const PlaceLanes& start, const PlaceLanes& edge) {
         constexpr Doubles d;
         const DoubleLanes zero = hn::Zero(d), one = hn::Set(d, 1), length_sq = dot(edge, edge);
@@ -211,11 +211,12 @@ class ContactLanes {
     PlaceLanes stretch_, centre_;
     DoubleLanes step_;
 
-    // The particles at hand.
+    // The current particles.
     std::array<Rows, 3> corners_{};
     Rows places_{}, points_{}, normals_{};
     alignas(64) Row signs_{}, depths_{}, features_{};
-    alignas(64) Row by_reference_{}; ///< near the normal is a sum over faces, and far away double does not do
+    alignas(64) Row by_reference_{}; ///< near the surface the normal is a sum over faces, and far away double
+                                     ///< is not precise enough
 };
 
 } // namespace
@@ -243,10 +244,10 @@ namespace {
 
 HWY_EXPORT(measure_contacts);
 
-/// Where the answers of contacts_batch() go.
+/// Where contacts_batch() writes its answers.
 struct ContactOutput {
-    /// Of particles that are sorted at a time: few enough for what is written to stay in a cache, enough for
-    /// neighbours to be close to each other.
+    /// The number of particles sorted at a time: few enough for the written data to stay in a cache, and
+    /// enough for neighbours to be close to each other.
     static constexpr std::size_t kQueueCapacity = 1 << 16;
 
     std::span<Contact> contacts;
@@ -254,7 +255,7 @@ struct ContactOutput {
     std::size_t size() const { return contacts.size(); }
     void prefetch(std::uint32_t particle) const {
         hwy::Prefetch(&contacts[particle]);
-        hwy::Prefetch(&contacts[particle].feature); // perhaps on another line
+        hwy::Prefetch(&contacts[particle].feature); // may be on the next cache line
     }
     void set(std::uint32_t particle, const Contact& contact) const { contacts[particle] = contact; }
     void set_none(std::uint32_t particle, const Vec3f& point_local, Side side) const {
@@ -262,12 +263,12 @@ struct ContactOutput {
     }
 };
 
-/// Where those of signed_distance_batch() go.
+/// Where signed_distance_batch() writes its answers.
 struct SignedDistanceOutput {
-    static constexpr std::size_t kQueueCapacity = 1 << 18; // a number takes less of the cache
+    static constexpr std::size_t kQueueCapacity = 1 << 18; // a number takes less cache than a contact
 
     std::span<float> distances;
-    std::span<Vec3f> gradients; ///< or empty
+    std::span<Vec3f> gradients; ///< may be empty
 
     std::size_t size() const { return distances.size(); }
     void prefetch(std::uint32_t particle) const {
@@ -298,14 +299,14 @@ void answer(const ContactSearch& search, ContactBlock& block, const Output& outp
     block.size = 0;
 }
 
-/// Fewer particles are searched one by one anyway, unless they come in an order that keeps neighbours
-/// together; sorting them takes longer than it saves.
+/// Fewer particles are not sorted, since that takes longer than it saves: they are searched one by one,
+/// unless they come in an order that keeps neighbours together.
 constexpr std::size_t kFewestSorted = 512;
 
 /// Memory for a batch.
 struct ContactMemory {
     std::span<Side> sides;                 ///< one for each particle of the batch
-    std::span<KeyedParticle> queue, spare; ///< equally long: this many particles are sorted at a time
+    std::span<KeyedParticle> queue, spare; ///< of equal length: the number of particles sorted at a time
 };
 
 template <typename Output>
@@ -315,14 +316,14 @@ void find_with(const ContactSearch& search, const StridedSpan<const Vec3f>& poin
     find_sides(search.map(), points_local, sides);
     const MortonCurve curve(search.map().centre, search.map().radius);
     OnScratch<std::array<ContactBlock, 2>>
-        block_memory; // near the lattice and afar, which are searched in different ways
+        block_memory; // for places near the lattice and afar, which are searched differently
     std::array<ContactBlock, 2>& blocks = *block_memory;
     std::size_t queued = 0;
     const auto answer_queue = [&] {
         const std::span<KeyedParticle> queue = memory.queue.first(queued);
         if (queued >= kFewestSorted) sort_by_key(queue, memory.spare.first(queued));
         for (std::size_t k = 0; k < queue.size(); ++k) {
-            // Neighbours in space are not neighbours in memory: what is read and written soon is fetched now.
+            // Neighbours in space are not neighbours in memory, so data that is used soon is prefetched now.
             constexpr std::size_t kAhead = 16;
             const std::uint32_t later = queue[std::min(k + kAhead, queue.size() - 1)].particle;
             hwy::Prefetch(&points_local[later]);
@@ -352,7 +353,7 @@ void find_with(const ContactSearch& search, const StridedSpan<const Vec3f>& poin
 template <typename Output>
 void find_with(const ContactSearch& search, const StridedSpan<const Vec3f>& points_local,
                const Output& output) {
-    // A solver queries few particles many times.
+    // A solver queries few particles at a time, but many times.
     constexpr std::size_t kStackCapacity = 256;
     if (output.size() <= kStackCapacity) {
         std::array<Side, kStackCapacity> sides;
@@ -361,7 +362,7 @@ void find_with(const ContactSearch& search, const StridedSpan<const Vec3f>& poin
         return;
     }
     const std::size_t count = std::min(Output::kQueueCapacity, output.size());
-    // Not std::make_unique, which would fill them.
+    // std::make_unique would initialise the elements.
     const std::unique_ptr<Side[]> sides(new Side[output.size()]);
     const std::unique_ptr<KeyedParticle[]> queue(new KeyedParticle[2 * count]);
     find_with(search, points_local, output,

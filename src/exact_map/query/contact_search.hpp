@@ -12,7 +12,7 @@
 
 namespace echinus {
 
-/// Two snapped positions differ from the true ones by at most sqrt(3) lattice steps together.
+/// The errors of two snapped positions together are at most sqrt(3) lattice steps.
 inline constexpr double kSnapping = 2;
 
 inline bool is_nan(const Vec3f& v) {
@@ -25,8 +25,8 @@ inline float signed_distance_without_contact(const Vec3f& point_local) {
                                : std::numeric_limits<float>::infinity();
 }
 
-/// Contacts in a stretched world. The stretch is factored into one number, the unit of lengths, and the
-/// remaining factors of the axes, at most 1.
+/// Contacts in a stretched world. The stretch is factored into one number, the unit of lengths, and factors
+/// of the axes, which are at most 1.
 class ContactSearch {
   public:
     ContactSearch(const ExactMapView& map, const Vec3d& stretch, float margin)
@@ -49,11 +49,11 @@ class ContactSearch {
     const Vec3d& stretch() const { return stretch_; }
     Vec3d place_of(const Vec3f& point_local) const { return frame_.to_lattice(point_local); }
 
-    /// Is a nearest point needed?
+    /// Does this particle need the nearest point?
     bool is_wanted(const Vec3f& point_local, Side side) const {
         return ((side & kInsideBit) != 0 || margin_ > 0) && is_finite(point_local);
     }
-    /// How far, in lattice steps.
+    /// The distance up to which the nearest point is needed, in lattice steps.
     double farthest(Side side) const {
         return (side & kInsideBit) != 0 ? std::numeric_limits<double>::infinity() : margin_;
     }
@@ -63,7 +63,7 @@ class ContactSearch {
         set_no_contact(result, point_local, side);
         return result;
     }
-    /// The same in place, member by member: a whole contact made elsewhere is copied by wide loads that have
+    /// Writes the result member by member: wide loads that copied a whole contact made elsewhere would have
     /// to wait for the narrow stores before them.
     static void set_no_contact(Contact& contact, const Vec3f& point_local, Side side) {
         contact.point = point_local;
@@ -98,7 +98,7 @@ class ContactSearch {
         return Vec3f(in_world * ((inside ? 1 : -1) / nearest.distance));
     }
 
-    /// Orients a normal of the faces out of the solid: the faces may have the opposite orientation.
+    /// Returns the normal that points out of the solid: the faces may have the opposite orientation.
     Vec3f outward(const Vec3d& point, const Vec3f& normal) const {
         constexpr double kClear = 2 * kSnapping;
         const Vec3d along{normal.x / stretch_.x, normal.y / stretch_.y, normal.z / stretch_.z};
@@ -116,14 +116,14 @@ class ContactSearch {
     double margin_; ///< in lattice steps
 };
 
-/// The contacts of many particles; the same as by the search, whatever the instruction set.
+/// The contacts of many particles. They equal those of the scalar search on every instruction set.
 /// @throws std::bad_alloc
 /// @pre points_local.size() == contacts.size()
 void find_contacts(const ContactSearch& search, const StridedSpan<const Vec3f>& points_local,
                    std::span<Contact> contacts);
 
-/// The signed distances, and the gradients if asked for, in the same way.
-/// @param search     finds everything, however far
+/// The signed distances and, if requested, the gradients; otherwise like find_contacts().
+/// @param search     must have no limit of distance
 /// @param gradients  empty, or as long as `distances`
 void find_signed_distances(const ContactSearch& search, const StridedSpan<const Vec3f>& points_local,
                            std::span<float> distances, std::span<Vec3f> gradients);

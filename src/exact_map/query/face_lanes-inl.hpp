@@ -1,4 +1,4 @@
-// Included once for each instruction set, as Highway wants it: no guard against a second time.
+// Included once per instruction set, as Highway requires; hence the unusual include guard.
 #if defined(ECHINUS_FACE_LANES_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef ECHINUS_FACE_LANES_INL
 #undef ECHINUS_FACE_LANES_INL
@@ -19,28 +19,29 @@
 #include <limits>
 #include <span>
 
-#if HWY_TARGET != HWY_SCALAR // where the reference is used instead
+#if HWY_TARGET != HWY_SCALAR // HWY_SCALAR uses the reference instead
 HWY_BEFORE_NAMESPACE();
 namespace echinus::HWY_NAMESPACE {
 
-/// Squared distances from places to a face, and how far off they may be.
+/// Bounds of the squared distances from places to a face.
 struct DistanceLanes {
     FloatLanes lower, upper;
 };
 
-/// The faces of a leaf, made ready for distances in single precision. They are prepared as lanes, and then
-/// measured with places as lanes: to the three edges and, above the face, to its plane.
+/// The faces of a leaf, prepared for distances in single precision. When they are prepared, the lanes are
+/// faces; when distances to their three edges and, above the face, to its plane are measured, the lanes are
+/// places.
 ///
-/// Rounding. Let S be the sum of all that is measured, coordinates of corners and places. Corners and places
-/// are off by less than 2^-22 S, hence the distance to an edge by less than 2^-19 S. The distance to the
-/// plane, and where its sides are, is off by that times q = |u| |v| / |u x v| for the sharpest corner,
-/// between sides u and v. What is allowed for is twice that, e = 2^-18 S q: squared distances lie within
-/// d^2 (1 - 2^-12) - 2^13 e^2 and the like, since 2 d e is at most 2^-13 d^2 + 2^13 e^2. Where q is large,
-/// only the edges are measured: no point of the face is farther from them than its width w, and (d - w)^2 is
-/// at least d^2 / 2 - w^2.
+/// Rounding. Let S be the sum of the absolute coordinates of corners and places. Corners and places are off
+/// by less than 2^-22 S, hence the distance to an edge by less than 2^-19 S. The distance to the plane and
+/// the positions of its sides are off by that times q = |u| |v| / |u x v| for the sharpest corner, between
+/// sides u and v. The bounds allow for twice that, e = 2^-18 S q: squared distances lie within d^2 (1 -
+/// 2^-12) - 2^13 e^2 and the like, since 2 d e is at most 2^-13 d^2 + 2^13 e^2. If q is large, only the edges
+/// are measured: no point of the face is farther from them than its width w, and (d - w)^2 is at least d^2 /
+/// 2 - w^2.
 class LeafLanes {
   public:
-    /// @param reach  a sum of coordinates that no place's exceeds
+    /// @param reach  an upper bound of the L1 norms of all places
     void prepare(const ExactMapView& map, std::uint32_t first_face, std::uint32_t count,
                  const Vec3<std::int32_t>& origin, const Vec3f& stretch, float reach) {
         for (std::uint32_t lane = 0; lane < kWidth; ++lane) {
@@ -89,7 +90,7 @@ class LeafLanes {
     }
 
     /// Lower bounds of the squared distances between the box around some places and the boxes around the
-    /// faces, all of them stretched.
+    /// faces, all stretched.
     void distances_sq_to_box(const Vec3f& low, const Vec3f& high,
                              std::array<float, TreeNode::kWidth>& distances_sq) const {
         constexpr Faces d;
@@ -125,7 +126,7 @@ class LeafLanes {
         alignas(32) Row x, y, z;
     };
 
-    /// 0 where the value is.
+    /// The reciprocal; 0 for 0.
     static FaceLanes inverse(FaceLanes value) {
         constexpr Faces d;
         return hn::IfThenElseZero(hn::Gt(value, hn::Zero(d)), hn::Div(hn::Set(d, 1), value));
@@ -151,8 +152,8 @@ class LeafLanes {
         const FaceLanes scale =
             hn::Add(hn::Add(l1_norm(a), l1_norm(b)), hn::Add(l1_norm(c), hn::Set(d, reach)));
         const FaceLanes error_sq = hn::Mul(hn::Mul(scale, scale), hn::Set(d, 0x1p-23F));
-        constexpr float kThin = 1024; // q^2 beyond which the plane is not used
-        const FaceLanes sides_sq =    // of the two longest, which meet in the sharpest corner
+        constexpr float kThin = 1024; // limit of q^2 beyond which the plane is not used
+        const FaceLanes sides_sq = // the product of the two longest sides, which meet at the sharpest corner
             hn::Max(hn::Max(hn::Mul(ab_sq, bc_sq), hn::Mul(bc_sq, ca_sq)), hn::Mul(ca_sq, ab_sq));
         const auto has_plane = hn::Lt(sides_sq, hn::Mul(normal_sq, hn::Set(d, kThin)));
         const FaceLanes q_sq = hn::Mul(sides_sq, inverse(normal_sq));
@@ -171,7 +172,7 @@ class LeafLanes {
         hn::Store(hn::Neg(inverse(ab_sq)), d, &minus_inverses_[0][first]);
         hn::Store(hn::Neg(inverse(bc_sq)), d, &minus_inverses_[1][first]);
         hn::Store(hn::Neg(inverse(ca_sq)), d, &minus_inverses_[2][first]);
-        // Without a plane no place is above the face.
+        // If there is no plane, no place counts as above the face.
         const auto if_plane = [&](const FaceVectors& v) {
             return FaceVectors{hn::IfThenElseZero(has_plane, v.x), hn::IfThenElseZero(has_plane, v.y),
                                hn::IfThenElseZero(has_plane, v.z)};
@@ -189,7 +190,7 @@ class LeafLanes {
     alignas(32) Row normal_inverses_, lower_factors_, lower_terms_, upper_terms_;
 };
 
-/// The faces that may be the nearest to some of the current places.
+/// The faces that may be the nearest for some of the current places.
 class FaceCandidates {
   public:
     void clear() { size_ = 0; }
@@ -202,7 +203,7 @@ class FaceCandidates {
         ++size_;
     }
 
-    /// Drops those that are too far for every place.
+    /// Drops the candidates that are too far for every place.
     void keep_within(FloatLanes upper) {
         constexpr Floats f;
         std::size_t kept = 0;
@@ -216,8 +217,9 @@ class FaceCandidates {
         size_ = kept;
     }
 
-    /// For each place, the candidate that the scalar query takes.
-    /// @param upper  no place is farther from its nearest face, in the unit of the lower bounds
+    /// Sets, for each place, the candidate that the scalar query would return.
+    /// @param upper  upper bounds of the distances between places and their nearest faces, in the unit of the
+    ///               lower bounds
     void choose(const ExactMapView& map, const Vec3d& stretch, std::span<const NearestSearch> searches,
                 FloatLanes upper, std::span<std::uint32_t> faces) const {
         std::array<double, kMaxLanes> distances_sq;
@@ -230,7 +232,7 @@ class FaceCandidates {
                 const auto lane = static_cast<std::size_t>(std::countr_zero(rest));
                 const NearestSearch& search = searches[lane];
                 const bool bounded = std::isfinite(search.farthest);
-                if (faces[lane] == kNoFace && !bounded) { // there must be one, and this may be it
+                if (faces[lane] == kNoFace && !bounded) { // there must be a nearest face, and this may be it
                     faces[lane] = face;
                     continue;
                 }
@@ -253,7 +255,7 @@ class FaceCandidates {
     }
 
   private:
-    /// A bit for each place that the face may be the nearest to.
+    /// A bit for each place for which the face may be the nearest.
     std::uint32_t places_within(std::size_t i, FloatLanes upper) const {
         constexpr Floats f;
         std::array<std::uint8_t, 8> bits{};
@@ -269,22 +271,22 @@ class FaceCandidates {
     alignas(64) std::array<std::array<float, kMaxLanes>, kCapacity> lowers_;
 };
 
-/// nearest_face() of as many places afar as there are lanes, in one walk through the tree. Compares the
-/// excess that nearest.cpp explains, in single precision.
+/// nearest_face() for as many distant places as there are lanes, in one walk through the tree. It compares in
+/// single precision the excess that nearest.cpp explains.
 ///
-/// On a triangle the excess is least at a corner, but for its square term: with edges no longer than s that
-/// takes off at most s^2 / 2 d.
+/// On a triangle the excess is least at a corner, except for its square term, which lowers it by at most s^2
+/// / 2 d if the edges are no longer than s.
 class FacesFromAfar {
   public:
     explicit FacesFromAfar(const ExactMapView& map) : map_(map) {}
 
-    /// Are these lanes for this search? A bounded one needs the scalar query's comparison.
+    /// Can these lanes answer this search? A bounded one needs the scalar query's comparison.
     static bool is_for(const NearestSearch& search) {
         return is_afar(search.place) && !std::isfinite(search.farthest);
     }
 
-    /// @param searches  one at least, and no more than there are lanes; is_for() holds
-    /// @returns  false, and no faces, where too many faces are about equally near to be told apart together
+    /// @param searches  at least one, and no more than there are lanes; is_for() holds
+    /// @returns  false, and no faces, if too many faces are about equally near to be told apart here
     bool find(std::span<const NearestSearch> searches, std::span<std::uint32_t> faces) {
         std::array<NearestSearch, kMaxLanes> near;
         for (std::size_t i = 0; i < searches.size(); ++i)
@@ -299,7 +301,7 @@ class FacesFromAfar {
   private:
     static constexpr std::size_t kMaxLanes = 16;
     static constexpr Vec3d kUnstretched{1, 1, 1};
-    static constexpr float kSlack = 1; ///< lattice steps, more than is rounded
+    static constexpr float kSlack = 1; ///< lattice steps; more than the rounding errors
     static constexpr float kFar = 1e30F;
 
     void start(std::span<const NearestSearch> searches) {
@@ -325,11 +327,11 @@ class FacesFromAfar {
     }
 
     struct Waiting {
-        float distance; ///< the lowest excess of all places; to sort by
+        float distance; ///< the lowest excess of all places; the key for sorting
         std::uint32_t node, child;
     };
 
-    /// Returns false where the candidates became too many.
+    /// Returns false if there were too many candidates.
     bool walk() {
         std::size_t count = push_children(0, 0);
         while (count > 0) {
@@ -350,7 +352,7 @@ class FacesFromAfar {
         const TreeNode& node = map_.nodes[number];
         const std::size_t before = count;
         for (std::uint32_t child = 0; child < TreeNode::kWidth; ++child) {
-            if (node.low[0][child] > node.high[0][child]) continue; // there is none
+            if (node.low[0][child] > node.high[0][child]) continue; // there is no such child
             const FloatLanes excess = box_excess(node, child);
             if (!is_near(excess)) continue;
             const float least = hn::GetLane(hn::MinOfLanes(Floats(), excess));
@@ -359,7 +361,7 @@ class FacesFromAfar {
         return count;
     }
 
-    /// Lower bounds in a box.
+    /// Lower bounds of the excess in a box.
     FloatLanes box_excess(const TreeNode& node, std::uint32_t child) const {
         constexpr Floats f;
         const auto along_axis = [&](std::size_t axis, FloatLanes place, FloatLanes direction) HWY_ATTR {
@@ -405,7 +407,7 @@ class FacesFromAfar {
     const ExactMapView& map_;
     PointLanes places_ = at_origin(), directions_ = at_origin();
     FloatLanes curvatures_; ///< 1 / 2 d
-    FloatLanes upper_;      ///< the excess of the nearest face of each surely lies within it
+    FloatLanes upper_;      ///< each place's nearest face certainly has no larger excess
 
     FaceCandidates candidates_;
     static constexpr std::size_t kMaxDepth = 12; // as in walk_near_leaves()

@@ -7,7 +7,7 @@
 #define HWY_TARGET_INCLUDE "exact_map/query/leaf_bounds.cpp"
 #include <hwy/foreach_target.h>
 
-// After foreach_target.h, which includes this file once for each instruction set.
+// Must follow foreach_target.h, which includes this file once per instruction set.
 #include "simd/dispatch.hpp"
 #include "simd/vec3_lanes-inl.hpp"
 
@@ -30,7 +30,7 @@ HWY_INLINE Points all(const Vec3f& v) {
 HWY_INLINE Lanes clamped(Lanes share) {
     return hn::Min(hn::Max(share, all(0)), all(1));
 }
-/// 0 where the value is.
+/// The reciprocal; 0 for 0.
 HWY_INLINE Lanes inverse(Lanes value) {
     return hn::IfThenElseZero(hn::Gt(value, all(0)), hn::Div(all(1), value));
 }
@@ -51,8 +51,8 @@ struct Shape {
                                                                  inverse(fused_dot(edges[2], edges[2]))},
           normal_inverse(plane_inverse()) {}
 
-    /// 1 / normal^2, or 0 for a triangle so thin that its plane is ill-determined: |u| |v| / |u x v| for the
-    /// sharpest corner more than 32. It has no inside here.
+    /// 1 / normal^2, or 0 for a triangle so thin that its plane is ill-determined, with |u| |v| / |u x v|
+    /// above 32 at the sharpest corner. No point counts as above such a triangle.
     HWY_INLINE Lanes plane_inverse() const {
         const Lanes ab = fused_dot(edges[0], edges[0]), bc = fused_dot(edges[1], edges[1]),
                     ca = fused_dot(edges[2], edges[2]);
@@ -71,7 +71,7 @@ struct Shortest {
         length_sq = hn::Min(candidate_sq, length_sq);
     }
 
-    /// Between edge i of the triangle and edge j of the face, as in triangle_distance.cpp.
+    /// Offers the vector between edge i of the triangle and edge j of the face, as in triangle_distance.cpp.
     HWY_INLINE void offer_edges(const Shape& triangle, const Shape& face, int i, int j) {
         const Points &u = triangle.edges[i], &v = face.edges[j];
         const Points r = triangle.corners[i] - face.corners[j];
@@ -85,7 +85,7 @@ struct Shortest {
         offer(candidate, fused_dot(candidate, candidate));
     }
 
-    /// Between the plane of a shape and a point above its inside.
+    /// Offers the vector between the plane of a shape and a point above its interior.
     HWY_INLINE void offer_height(const Shape& shape, const Points& point, Lanes sign) {
         auto inside = hn::Gt(shape.normal_inverse, all(0));
         for (int k = 0; k < 3; ++k) {
@@ -101,7 +101,7 @@ struct Shortest {
     static constexpr float kFar = 1e30F;
 };
 
-/// Squared gaps between the box of the triangle and those of the faces.
+/// Squared gaps between the triangle's box and the boxes of the faces.
 HWY_INLINE Lanes box_gaps_sq(const NearTriangle& triangle, const Points& a, const Points& b,
                              const Points& c) {
     const auto gap = [](Lanes p, Lanes q, Lanes r, float low, float high) HWY_ATTR {
@@ -112,13 +112,13 @@ HWY_INLINE Lanes box_gaps_sq(const NearTriangle& triangle, const Points& a, cons
     const Points gaps{gap(a.x, b.x, c.x, triangle.low.x, triangle.high.x),
                       gap(a.y, b.y, c.y, triangle.low.y, triangle.high.y),
                       gap(a.z, b.z, c.z, triangle.low.z, triangle.high.z)};
-    // Rounding of corners and sums.
+    // Allows for the rounding of corners and sums.
     return hn::Mul(fused_dot(gaps, gaps), all(1 - 0x1p-20F));
 }
 
-/// Rounding. Let S be the sum of all coordinates. Whatever direction was computed, the gap along it is off by
-/// less than 2^-21 S. A vector between two edges is off by as much from one between two of their points, and
-/// a height by that times 32, by the planes that are used.
+/// Rounding. Let S be the sum of all absolute coordinates. Whichever direction was computed, the gap along it
+/// is off by less than 2^-21 S. A vector between two edges differs by as much from one between two of their
+/// points; a height is off by 32 times as much, by the choice of the planes that are used.
 struct Bounds {
     Lanes lower, upper;
 

@@ -7,14 +7,14 @@
 
 namespace echinus {
 
-/// A triangle in single precision, around a lattice point at one of its corners.
+/// A triangle in single precision, relative to a lattice point at one of its corners.
 struct NearTriangle {
     Vec3<std::int32_t> origin;
-    std::array<Vec3f, 3> corners; ///< from the origin
-    Vec3f low, high;              ///< of the box around it, from the origin; rounded outwards
+    std::array<Vec3f, 3> corners; ///< relative to the origin
+    Vec3f low, high;              ///< limits of the box around it, relative to the origin; rounded outwards
 
-    /// Lattice steps from the map's centre: up to there single precision holds all differences of lattice
-    /// points.
+    /// The distance from the map's centre, in lattice steps, up to which single precision represents all
+    /// differences of lattice points exactly.
     static constexpr double kRange = 0x1p23;
 };
 
@@ -23,11 +23,11 @@ struct LeafBounds {
     alignas(64) std::array<float, TreeNode::kWidth> lower, upper;
 };
 
-/// Bounds of the distances by vector instructions: to decide most pairs without distance_from_below(). How
-/// near to each other they are depends on the instruction set; that they are bounds does not.
-/// @param reach_sq  where no face has a box within it, all lower bounds are infinite and nothing more is
-/// computed
-/// @return whether a face has
+/// Bounds the distances by vector instructions, so that most pairs are decided without distance_from_below().
+/// How tight the bounds are depends on the instruction set; that they hold does not.
+/// @param reach_sq  if no face has a box within this squared distance, all lower bounds are infinite and
+///                  nothing else is computed
+/// @return whether the box of any face is within `reach_sq`
 bool bound_leaf_distances(const ExactMapView& map, const LeafFaces& faces, const NearTriangle& triangle,
                           float reach_sq, LeafBounds& bounds) noexcept;
 

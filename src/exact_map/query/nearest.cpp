@@ -17,7 +17,7 @@ Vec3d stretched(const Vec3d& v, const Vec3d& stretch) {
     return {v.x * stretch.x, v.y * stretch.y, v.z * stretch.z};
 }
 
-/// Corners of a face, stretched, with the place as origin.
+/// The corners of a face, stretched, relative to the place.
 using Corners = TriangleCorners;
 
 Corners corners_around(const ExactMapView& map, std::uint32_t face, const Vec3d& place,
@@ -27,8 +27,8 @@ Corners corners_around(const ExactMapView& map, std::uint32_t face, const Vec3d&
             stretched(Vec3d(corners[2]) - place, stretch)};
 }
 
-/// Squared distance of a triangle from the origin, in a form that suits vector instructions: the face and its
-/// three edges always, without a branch.
+/// The squared distance of a triangle from the origin, in a form that suits vector instructions: it always
+/// measures the plane and all three edges, without a branch.
 double distance_sq_to_triangle(const Vec3d& a, const Vec3d& b, const Vec3d& c) {
     const Vec3d ab = b - a, bc = c - b, ca = a - c;
     const Vec3d on_ab = a + ab * nearest_share(a, ab);
@@ -43,12 +43,12 @@ double distance_sq_to_triangle(const Vec3d& a, const Vec3d& b, const Vec3d& c) {
     const double above_ca = dot(cross(normal, c), ca);
     const double height = dot(a, normal);
     const double to_plane = height * height / dot(normal, normal);
-    // A face without area has no inside: all three are 0.
+    // For a face without area, all three are 0, so no point counts as above it.
     const bool above = (above_ab > 0) & (above_bc > 0) & (above_ca > 0);
     return above ? to_plane : least;
 }
 
-/// Squared distances to the faces of a leaf. Each coordinate has an array of its own, for the compiler to
+/// Squared distances to the faces of a leaf. Each coordinate has its own array, so that the compiler can
 /// vectorise.
 class LeafDistances {
   public:
@@ -80,7 +80,7 @@ class LeafDistances {
 };
 
 /// Lower bounds of the squared distances from a place to the boxes of a node's children, in single precision:
-/// the place is moved towards each box by more than rounding can amount to.
+/// the place is moved towards each box by more than the rounding errors.
 class BoxDistances {
   public:
     BoxDistances(const Vec3d& place, const Vec3d& stretch) : place_(place), stretch_(stretch) {}
@@ -112,13 +112,13 @@ class BoxDistances {
     Vec3f place_, stretch_;
 };
 
-/// How much farther from a place afar than the centre a point q of the lattice is: with the place at the
-/// distance d in the direction u,
+/// By how much a lattice point q is farther from a distant place than the centre is. With the place at
+/// distance d in direction u,
 ///
 ///     (|place - q|^2 - d^2) / 2 d = q^2 / 2 d - u q,
 ///
-/// which grows with the distance, and of which little is lost in single precision. The sum has a term for
-/// each axis, a parabola with its minimum at the place's coordinate.
+/// which grows with the distance and loses little in single precision. The sum has one term per axis: a
+/// parabola whose minimum is at the place's coordinate.
 class BoxExcesses {
   public:
     explicit BoxExcesses(const Vec3d& place)
@@ -136,7 +136,7 @@ class BoxExcesses {
         return result;
     }
 
-    static constexpr float kSlack = 1; ///< lattice steps, more than the rounding of terms below 2^20
+    static constexpr float kSlack = 1; ///< lattice steps; more than the rounding of terms below 2^20
     static constexpr float kNoChild = std::numeric_limits<float>::infinity();
 
   private:
@@ -152,13 +152,13 @@ class BoxExcesses {
     float curvature_;
 };
 
-/// A float a little above a double: by more than box distances are rounded. Infinity is excluded, since
-/// missing children are at infinity.
+/// A float above a double by more than the rounding errors of box distances. It is finite, since missing
+/// children are at infinity.
 float bound_above(double value) {
     return static_cast<float>(std::min(value, 1e37)) * (1 + 1e-6F);
 }
 
-/// The normal of the stretched face, out of its front; 0 for one without area.
+/// The outward unit normal of the front of the stretched face; 0 for a face without area.
 Vec3d unit_normal(const ExactMapView& map, std::uint32_t face, const Vec3d& place, const Vec3d& stretch) {
     const Corners corners = corners_around(map, face, place, stretch);
     const Vec3d normal = cross(corners[1] - corners[0], corners[2] - corners[0]);
@@ -167,13 +167,13 @@ Vec3d unit_normal(const ExactMapView& map, std::uint32_t face, const Vec3d& plac
     return area > 0 ? normal * (mirror / area) : Vec3d{};
 }
 
-/// The face nearest to a place, of those in the leaves that it is shown.
+/// The face nearest to a place among those of the leaves passed to improve().
 class NearestSoFar {
   public:
     NearestSoFar(const ExactMapView& map, const Vec3d& place, const Vec3d& stretch, double farthest)
         : map_(map), place_(place), stretch_(stretch), distance_sq_(farthest * farthest) {}
 
-    /// Returns whether one of the faces is nearer than those before.
+    /// Returns whether one of these faces is nearer than all previous ones.
     bool improve(const LeafFaces& faces) {
         const LeafDistances distances(map_, faces, place_, stretch_);
         const double before = distance_sq_;
@@ -229,7 +229,7 @@ std::optional<std::uint32_t> nearest_face(const ExactMapView& map, const Vec3d& 
     const bool unstretched = stretch == kUnstretched;
     if (unstretched ? !is_afar(place) : brought_within_reach(place, stretch) == place)
         return nearest_face_from_nearby(map, place, stretch, farthest);
-    // No corner is farther from the centre than its coordinates can be, snapped and rounded.
+    // No corner, snapped and rounded, is farther than 2 kLatticeExtent from the centre.
     if (farthest < length(stretched(place, stretch)) - 2 * static_cast<double>(kLatticeExtent))
         return std::nullopt;
     constexpr double kUnbounded = std::numeric_limits<double>::infinity();

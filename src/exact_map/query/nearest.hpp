@@ -15,15 +15,17 @@
 
 namespace echinus {
 
-/// How far something is from each child of a node; larger than any bound where there is no child.
+/// The distance of something from each child of a node, in any unit; larger than any bound if there is no
+/// such child.
 using ChildDistances = std::array<float, TreeNode::kWidth>;
 
-/// The faces of a leaf, half open.
+/// The faces of a leaf, as a half-open range.
 struct LeafFaces {
     std::uint32_t first, last;
 };
 
-/// Pushes onto a stack whose entries from `sorted` on are sorted, the nearest on top, and keeps them so.
+/// Pushes onto a stack whose entries from index `sorted` on are sorted, with the nearest on top, and keeps
+/// them sorted.
 template <typename Entry>
 void push_sorted(Entry* stack, std::size_t sorted, std::size_t& count, const Entry& entry) {
     std::size_t place = count++;
@@ -33,8 +35,8 @@ void push_sorted(Entry* stack, std::size_t sorted, std::size_t& count, const Ent
 }
 
 /// Branch and bound: calls visit(LeafFaces) for the leaves that are not beyond `bound`, near ones first.
-/// Stops when what is left lies beyond the bound, which `visit` may lower.
-/// @param measure  ChildDistances measure(node): lower bounds of the distance in any unit
+/// Stops when all remaining leaves lie beyond the bound, which `visit` may lower.
+/// @param measure  ChildDistances measure(node): lower bounds of distances in any unit
 template <typename Measure, typename Visit>
 void walk_near_leaves(const ExactMapView& map, const float& bound, const Measure& measure,
                       const Visit& visit) {
@@ -42,7 +44,8 @@ void walk_near_leaves(const ExactMapView& map, const float& bound, const Measure
         std::uint32_t child;
         float distance;
     };
-    // validate() and the builder keep trees to this depth; at each level all children but one may wait.
+    // validate() and the builder limit trees to this depth; at each level all children but one may be
+    // waiting.
     constexpr std::size_t kMaxDepth = 12;
     std::array<Waiting, kMaxDepth * TreeNode::kWidth> waiting;
     std::size_t count = 0;
@@ -67,26 +70,27 @@ void walk_near_leaves(const ExactMapView& map, const float& bound, const Measure
     }
 }
 
-// Nearest points of an exact map's surface. Places are in lattice steps from the centre, and distances those
-// of space stretched along the axes (see contact()).
+// Nearest points of an exact map's surface. Places are in lattice steps relative to the centre; distances are
+// those in space stretched along the axes (see contact()).
 
 struct NearestPoint {
     Vec3d point;
-    double distance = 0; ///< of the stretched
+    double distance = 0; ///< in stretched space
     std::uint32_t face = 0;
     Feature feature = Feature::Unknown;
 };
 
-/// Is a place clear of the lattice? The farther it is, the less squared distances to different faces differ,
-/// and the search compares them in another form.
+/// Is a place well outside the lattice? The farther away it is, the less the squared distances to different
+/// faces differ, so the search then compares them in another form.
 inline constexpr double kAfar = 1.25 * static_cast<double>(kLatticeExtent);
 inline bool is_afar(const Vec3d& place) {
     return std::max({std::fabs(place.x), std::fabs(place.y), std::fabs(place.z)}) >= kAfar;
 }
 
-/// Where a place is so far that the distances to the faces, rounded to double, no longer differ, the place
-/// from which the nearest face and its nearest point are found instead: on its ray from the centre, and so
-/// far that both are the same but for a sixteenth of a lattice step, stretched.
+/// For a place so far away that the distances to the faces no longer differ when rounded to double: the place
+/// from which the nearest face and its nearest point are determined instead. It lies on the ray from the
+/// centre through the original place, so far out that both results are the same within a sixteenth of a
+/// lattice step, stretched. Nearer places are returned unchanged.
 inline Vec3d brought_within_reach(const Vec3d& place, const Vec3d& stretch = {1, 1, 1}) {
     constexpr double kReach = 0x1p44;
     const double largest = std::max(
@@ -94,8 +98,8 @@ inline Vec3d brought_within_reach(const Vec3d& place, const Vec3d& stretch = {1,
     return largest > kReach ? place * (kReach / largest) : place;
 }
 
-/// The nearest face of the whole surface, if it is at most `farthest` away: a branch and bound search of the
-/// face tree, so that the minimum is global. Of faces that are equally near, the first.
+/// The nearest face of the whole surface, if it is at most `farthest` away; of equally near faces, the first.
+/// A branch-and-bound search of the face tree finds the global minimum.
 std::optional<std::uint32_t> nearest_face(const ExactMapView& map, const Vec3d& place, const Vec3d& stretch,
                                           double farthest) noexcept;
 
@@ -108,9 +112,9 @@ double distance_sq_to_face(const ExactMapView& map, std::uint32_t face, const Ve
                            const Vec3d& stretch) noexcept;
 
 /// Unit normal of the stretched surface at its nearest point: the sum of the normals of the faces within
-/// `reach` lattice steps of it, each weighed by the angle that the face spans there (a full turn inside a
-/// face, half a turn on its edge). Baerentzen and Aanaes 2005. Where they cancel, as on a plate without
-/// thickness, that of the nearest face; 0, 0, 1 where that has no area.
+/// `reach` lattice steps of the point, each weighted by the angle that the face spans there (2 pi inside a
+/// face, pi on its edge). Baerentzen and Aanaes 2005. If the normals cancel, as on a plate without thickness,
+/// the normal of the nearest face; 0, 0, 1 if that face has no area.
 Vec3f pseudonormal(const ExactMapView& map, const NearestPoint& nearest, const Vec3d& stretch,
                    double reach) noexcept;
 
@@ -118,24 +122,24 @@ Vec3f pseudonormal(const ExactMapView& map, const NearestPoint& nearest, const V
 
 struct NearestSearch {
     Vec3d place;                       ///< in lattice steps
-    double farthest;                   ///< as nearest_face() takes it
-    std::uint32_t near_leaf = kNoLeaf; ///< leaf_near(), or not yet known
+    double farthest;                   ///< as for nearest_face()
+    std::uint32_t near_leaf = kNoLeaf; ///< leaf_near(), or kNoLeaf if not yet known
 };
 
 inline constexpr std::uint32_t kNoFace = UINT32_MAX;
 
-/// The nearest face of a place, or kNoFace; the same as that of nearest_face(), whatever the instruction set.
-/// It needs no places near each other: a node's boxes and a leaf's faces are the lanes.
+/// The nearest face of a place, or kNoFace. The result equals that of nearest_face() on every instruction
+/// set. The lanes are the boxes of a node or the faces of a leaf, so it needs no places near each other.
 /// @param search  finite
 std::uint32_t find_nearest_face(const ExactMapView& map, const Vec3d& stretch,
                                 const NearestSearch& search) noexcept;
 
-/// The nearest face of each place, or kNoFace; the same as that of nearest_face(), whatever the instruction
+/// The nearest face of each place, or kNoFace. The results equal those of nearest_face() on every instruction
 /// set.
 ///
-/// As many places as there are lanes go down the tree together. A filter in single precision leaves each of
-/// them few faces, mostly one; among several the distances of the reference decide.
-/// @param searches  places near each other should follow each other; finite
+/// As many places as there are lanes descend the tree together. A filter in single precision leaves few faces
+/// for each of them, usually one; if there are several, the distances of the reference decide.
+/// @param searches  finite; places near each other should be consecutive
 /// @pre searches.size() == faces.size()
 void find_nearest_faces(const ExactMapView& map, const Vec3d& stretch,
                         std::span<const NearestSearch> searches, std::span<std::uint32_t> faces) noexcept;

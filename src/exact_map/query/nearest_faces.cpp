@@ -11,7 +11,7 @@
 #define HWY_TARGET_INCLUDE "exact_map/query/nearest_faces.cpp"
 #include <hwy/foreach_target.h>
 
-// After foreach_target.h, which includes this file once for each instruction set.
+// Must follow foreach_target.h, which includes this file once per instruction set.
 #include "exact_map/query/face_lanes-inl.hpp"
 #include "exact_map/query/one_place-inl.hpp"
 #include "geometry/scratch.hpp"
@@ -40,11 +40,11 @@ std::uint32_t nearest_by_reference(const ExactMapView& map, const Vec3d& stretch
 
 namespace {
 
-/// As many searches as there are lanes, in one walk through the tree. Visited leaves are kept for the
-/// searches that follow.
+/// Performs as many searches as there are lanes in one walk through the tree. Leaves that were visited are
+/// kept for the following searches.
 class NearestFaceFinder {
   public:
-    /// @param all  searches; one at least
+    /// @param all  all searches, at least one
     NearestFaceFinder(const ExactMapView& map, const Vec3d& stretch, std::span<const NearestSearch> all)
         : map_(map), stretch_(stretch), stretch_float_(stretch), origin_(rounded_origin(all.front().place)) {
         for (const NearestSearch& search : all) {
@@ -56,9 +56,9 @@ class NearestFaceFinder {
         leaf_of_slot_.fill(kNoFace);
     }
 
-    /// @param searches  one at least, and no more than there are lanes
-    /// @returns  false, and no faces, where one is out of range or too many faces are about equally near to
-    /// be told apart together
+    /// @param searches  at least one, and no more than there are lanes
+    /// @returns  false, and no faces, if a search is out of range or too many faces are about equally near to
+    /// be told apart here
     bool find(std::span<const NearestSearch> searches, std::span<std::uint32_t> faces) {
         if (!std::all_of(searches.begin(), searches.end(), is_within_range)) return false;
         start(searches);
@@ -76,7 +76,7 @@ class NearestFaceFinder {
     static constexpr double kMaxDistanceSq = 1e30;
     static constexpr std::size_t kMaxLanes = 16;
 
-    /// Places farther off are left to the scalar query.
+    /// Places farther from the centre are left to the scalar query.
     static constexpr double kRange = 4 * static_cast<double>(kLatticeExtent);
 
     static Vec3<std::int32_t> rounded_origin(const Vec3d& place) {
@@ -118,7 +118,7 @@ class NearestFaceFinder {
         std::uint32_t node, child;
     };
 
-    /// Returns false where the candidates became too many.
+    /// Returns false if there were too many candidates.
     bool search() {
         const std::uint32_t seed = last_leaf_;
         if (seed != kNoFace && !visit_leaf(seed)) return false;
@@ -139,7 +139,8 @@ class NearestFaceFinder {
         return true;
     }
 
-    /// Pushes the children that are not too far, the nearest on top. Returns how many are waiting.
+    /// Pushes the children that are not too far away, with the nearest on top. Returns how many nodes are
+    /// waiting.
     std::size_t push_children(std::uint32_t node, std::size_t count) {
         alignas(32) std::array<float, TreeNode::kWidth> distances_sq;
         measure_children(map_.nodes[node], distances_sq.data());
@@ -151,7 +152,8 @@ class NearestFaceFinder {
         return count;
     }
 
-    /// Between the box around all places and the boxes of a node's children; far where there is no child.
+    /// Measures from the box around all places to the boxes of a node's children; far if there is no such
+    /// child.
     void measure_children(const TreeNode& node, float* distances_sq) const {
         using Boxes = hn::CappedTag<float, TreeNode::kWidth>;
         constexpr Boxes d;
@@ -183,7 +185,7 @@ class NearestFaceFinder {
         }
     }
 
-    /// Is a box too far from every single place?
+    /// Is a box too far from every one of the places?
     bool is_far(const Waiting& waiting) const {
         constexpr Floats f;
         const TreeNode& node = map_.nodes[waiting.node];
@@ -235,25 +237,26 @@ class NearestFaceFinder {
         return true;
     }
 
-    static constexpr float kBoxSlack = 1; ///< lattice steps, more than is rounded
+    static constexpr float kBoxSlack = 1; ///< lattice steps; more than the rounding errors
 
     const ExactMapView& map_;
     Vec3d stretch_;
     Vec3f stretch_float_;
-    std::uint32_t last_leaf_ = kNoFace; ///< its first face; where the last places found their nearest
+    std::uint32_t last_leaf_ =
+        kNoFace; ///< first face of the leaf in which the last places found their nearest
 
     Vec3<std::int32_t> origin_; ///< on the lattice, near all places
-    float reach_ = 0;           ///< no place's coordinates, taken together, are farther from it
+    float reach_ = 0;           ///< no place's L1 distance from it is larger
 
-    // The places at hand.
+    // The current places.
     PointLanes flat_ = at_origin(), places_ = at_origin(); ///< before and after stretching
     Vec3f low_, high_;                                     ///< the box around them, before stretching
     Vec3f stretched_low_, stretched_high_;
-    FloatLanes upper_;         ///< squared distance within which the nearest face of each surely lies
-    float farthest_upper_ = 0; ///< most of those
+    FloatLanes upper_;         ///< no place's nearest face has a larger squared distance
+    float farthest_upper_ = 0; ///< the largest of those
 
     static constexpr std::size_t kKeptLeaves = 32;
-    std::array<std::uint32_t, kKeptLeaves> leaf_of_slot_; ///< first face, or kNoFace
+    std::array<std::uint32_t, kKeptLeaves> leaf_of_slot_; ///< first face of the leaf, or kNoFace
     std::array<LeafLanes, kKeptLeaves> leaves_;
 
     FaceCandidates candidates_;
@@ -261,16 +264,17 @@ class NearestFaceFinder {
     std::array<Waiting, kMaxDepth * TreeNode::kWidth> waiting_;
 };
 
-/// How far apart the places of a group may be, all axes added, for a walk of their own each to take longer
-/// than one that they share. Ten leaves, if these were spread over the sphere: measured on meshes of 3000 to
-/// 52 000 faces, from 5 to 10 with little difference.
+/// The L1 distance between the places of a group beyond which separate walks take less time than a shared
+/// one. It is ten times the width of a leaf, if the leaves were spread over the sphere: measured on meshes of
+/// 3000 to 52 000 faces, where factors from 5 to 10 made little difference.
 double sharing_distance(const ExactMapView& map) {
     constexpr double kLeaves = 10;
     const double leaf_count = static_cast<double>(map.face_count()) / TreeNode::kWidth;
     return kLeaves * static_cast<double>(kLatticeExtent) / std::sqrt(leaf_count);
 }
 
-/// @param distance  from the surface, of a place nearby: from afar, places see the same faces first
+/// @param distance  the distance of a nearby place from the surface: from afar, places see the same faces
+///                  first
 bool pays_to_share(std::span<const NearestSearch> group, double farthest_apart, double distance) {
     if (group.size() < hn::Lanes(Floats()) / 2) return false;
     Vec3d low = group[0].place, high = low;
@@ -317,7 +321,7 @@ void find_nearest_faces(const ExactMapView& map, const Vec3d& stretch,
     }
     const std::size_t lanes = hn::Lanes(Floats());
     const double farthest_apart = sharing_distance(map);
-    double distance = 0; // of the last place
+    double distance = 0; // of the previous place
     const auto find_with = [&](auto& finder) {
         for (std::size_t begin = 0; begin < searches.size(); begin += lanes) {
             const std::size_t count = std::min(lanes, searches.size() - begin);

@@ -1,4 +1,4 @@
-// Included once for each instruction set, as Highway wants it: no guard against a second time.
+// Included once per instruction set, as Highway requires; hence the unusual include guard.
 #if defined(ECHINUS_ONE_PLACE_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef ECHINUS_ONE_PLACE_INL
 #undef ECHINUS_ONE_PLACE_INL
@@ -20,11 +20,11 @@
 #include <cstdint>
 #include <limits>
 
-#if HWY_TARGET != HWY_SCALAR // where the reference is used instead
+#if HWY_TARGET != HWY_SCALAR // HWY_SCALAR uses the reference instead
 HWY_BEFORE_NAMESPACE();
 namespace echinus::HWY_NAMESPACE {
 
-/// A node's boxes or a leaf's faces, or half of them where vectors are short.
+/// One lane for each box of a node or face of a leaf, or for half of them if vectors are short.
 using Eight = hn::CappedTag<float, TreeNode::kWidth>;
 using EightLanes = hn::Vec<Eight>;
 using EightPoints = Vec3Lanes<EightLanes>;
@@ -45,7 +45,7 @@ HWY_INLINE EightPoints as_floats(const EightPlaces& v) {
     return {hn::ConvertTo(Eight(), v.x), hn::ConvertTo(Eight(), v.y), hn::ConvertTo(Eight(), v.z)};
 }
 
-/// Limits of some boxes of a node along an axis, in its units.
+/// Limits of some boxes of a node along an axis, in the units of boxes.
 HWY_INLINE hn::Vec<EightNumbers> box_numbers(const std::int16_t* limits) {
     return hn::PromoteTo(EightNumbers(), hn::LoadU(hn::Rebind<std::int16_t, Eight>(), limits));
 }
@@ -58,12 +58,12 @@ HWY_INLINE hn::Mask<EightNumbers> boxes_that_exist(const TreeNode& node, std::si
                   hn::Add(box_numbers(node.high[0] + first), hn::Set(EightNumbers(), 1)));
 }
 
-/// Of the distances of some faces, in a unit in which nearer is less.
+/// Bounds of the distances of some faces, in a unit that grows with the distance.
 struct FaceBounds {
     EightLanes lower, upper;
 };
 
-/// Squared distances of a place on the lattice or beside it.
+/// Squared distances of a place on the lattice or near it.
 class NearMeasure {
   public:
     NearMeasure(const Vec3d& place, const Vec3d& stretch)
@@ -71,7 +71,7 @@ class NearMeasure {
           offset_(place - Vec3d(origin_)) {
         constexpr float kPerUnit = 1.0F / ExactMapView::kBoxUnit;
         const Vec3f in_units = Vec3f(place) * kPerUnit;
-        const Vec3f slack{kPerUnit, kPerUnit, kPerUnit}; // a step: more than is rounded
+        const Vec3f slack{kPerUnit, kPerUnit, kPerUnit}; // one step: more than the rounding errors
         above_ = in_units + slack;
         below_ = in_units - slack;
         per_unit_ = Vec3f(Vec3d{std::fabs(stretch.x), std::fabs(stretch.y), std::fabs(stretch.z)}) *
@@ -79,24 +79,24 @@ class NearMeasure {
     }
 
     static constexpr float kFarthest = 1e30F;
-    /// Above the squared distances that are at most this.
+    /// A limit above all squared distances up to this one.
     static float limit(double farthest_sq) {
         return static_cast<float>(std::min(farthest_sq, double{kFarthest})) * (1 + 0x1p-20F);
     }
     float limit_by(double distance_sq) const { return limit(distance_sq); }
-    /// The square of how far a leaf near the place's ray is likely to be near the place, too: the width of
-    /// two leaves, if they were spread over the sphere.
+    /// The squared distance that a leaf near the place's ray likely keeps to the place, too: the square of
+    /// twice the width of a leaf, if the leaves were spread over the sphere.
     static float close_by(const ExactMapView& map) {
         constexpr auto kExtent = static_cast<float>(kLatticeExtent);
         return 32 * kExtent * kExtent / static_cast<float>(map.face_count());
     }
 
-    /// By which nearest_face() compares faces.
+    /// The squared distance by which nearest_face() compares faces.
     double distance_sq(const ExactMapView& map, std::uint32_t face) const {
         return distance_sq_to_face(map, face, place_, exact_stretch_);
     }
 
-    /// Bounds from below.
+    /// Lower bounds of the squared distances of boxes.
     HWY_INLINE EightLanes boxes(const TreeNode& node, std::size_t first) const {
         const auto clear = [&](std::size_t axis, float above, float below, float unit) HWY_ATTR {
             const EightLanes low = hn::Sub(box_limits(node.low[axis] + first), eight(above));
@@ -123,8 +123,8 @@ class NearMeasure {
         set(above_.z, below_.z, per_unit_.z, reach_low_.z, reach_high_.z);
     }
 
-    /// Which boxes meet the box around what is within reach. In whole numbers, which takes a third of the
-    /// time of a distance.
+    /// The boxes that meet the box around everything within reach. Computed in integers, which takes a third
+    /// of the time of a distance.
     HWY_INLINE hn::Mask<EightNumbers> within(const TreeNode& node, std::size_t first) const {
         constexpr EightNumbers i;
         const auto gap = [&](std::size_t axis, std::int32_t low, std::int32_t high) HWY_ATTR {
@@ -139,18 +139,18 @@ class NearMeasure {
 
     /// @param corner_a, b, c  on the lattice
     ///
-    /// With edges u = b - a and v = c - a, all is made of the products of a, u and v, and the foot of the
-    /// place in the plane is a + (s u + t v) / (u x v)^2.
+    /// With edges u = b - a and v = c - a, everything follows from the products of a, u and v; the place's
+    /// projection onto the plane is a + (s u + t v) / (u x v)^2.
     ///
-    /// Rounding. Edges and a are off by no more than a rounding, e = 2^-24. Let m be the largest distance of
-    /// a corner: products with a are off by 4 e m |u| and the like, squared distances from edges by 54 e m^2,
-    /// and that from the plane by 60 e q^2 m^2, with q = |u| |v| / |u x v|. Where rounding takes a foot just
-    /// outside for one inside, the square of how far it is outside is missing: less than 1600 e^2 q^4 m^2, 6
-    /// e m^2 where the plane is used. Below, 2^7 e q^2 m^2 is allowed for, and 2 (a^2 + u^2 + v^2) taken for
-    /// m^2.
+    /// Rounding. Edges and a are off by no more than one rounding, e = 2^-24. Let m be the largest distance
+    /// of a corner: products with a are off by 4 e m |u| and the like, squared distances from edges by 54 e
+    /// m^2, and those from the plane by 60 e q^2 m^2, with q = |u| |v| / |u x v|. If rounding makes a
+    /// projection just outside the face count as inside, the square of its distance from the face is missing:
+    /// less than 1600 e^2 q^4 m^2, which is 6 e m^2 where the plane is used. The code below allows for 2^7 e
+    /// q^2 m^2, with 2 (a^2 + u^2 + v^2) in place of m^2.
     HWY_INLINE FaceBounds faces(const EightPlaces& corner_a, const EightPlaces& b,
                                 const EightPlaces& c) const {
-        constexpr float kThin = 256; // q^2 beyond which this does not do
+        constexpr float kThin = 256; // limit of q^2 beyond which this method fails
         const EightPoints stretch = eight(stretch_);
         const EightPoints u = times(as_floats(b - corner_a), stretch);
         const EightPoints v = times(as_floats(c - corner_a), stretch);
@@ -184,19 +184,19 @@ class NearMeasure {
     }
 
   private:
-    /// From an edge, by products of its start with itself and with the edge.
+    /// The squared distance from an edge, by products of its start with itself and with the edge.
     static HWY_INLINE EightLanes to_edge_sq(EightLanes start_sq, EightLanes along, EightLanes edge_sq) {
         const EightLanes back =
-            hn::Min(hn::Max(hn::Div(along, edge_sq), eight(-1)), hn::Zero(Eight())); // minus a share
+            hn::Min(hn::Max(hn::Div(along, edge_sq), eight(-1)), hn::Zero(Eight())); // the negative fraction
         return hn::NegMulAdd(back, hn::NegMulAdd(back, edge_sq, hn::Add(along, along)), start_sq);
     }
 
-    /// Also for faces that are so thin that their planes are ill-determined, or segments, or points. Rounding
-    /// is that of LeafLanes, with the place as its origin.
+    /// The same bounds, also for faces so thin that their planes are ill-determined, and for segments and
+    /// points. The rounding is that of LeafLanes, with the place as origin.
     HWY_NOINLINE FaceBounds thin_faces(const EightPoints& a, const EightPoints& b,
                                        const EightPoints& c) const {
-        constexpr float kThin = 1024;                        // as there
-        const auto inverse = [](EightLanes value) HWY_ATTR { // 0 where the value is
+        constexpr float kThin = 1024;                        // as in LeafLanes
+        const auto inverse = [](EightLanes value) HWY_ATTR { // 0 for 0
             return hn::IfThenElseZero(hn::Gt(value, hn::Zero(Eight())), hn::Div(eight(1), value));
         };
         const auto to_edge_sq = [&](const EightPoints& start, const EightPoints& edge,
@@ -210,7 +210,7 @@ class NearMeasure {
         const EightPoints ab = b - a, bc = c - b, ca = a - c, normal = fused_cross(ab, bc);
         const EightLanes ab_sq = fused_dot(ab, ab), bc_sq = fused_dot(bc, bc), ca_sq = fused_dot(ca, ca);
         const EightLanes normal_sq = fused_dot(normal, normal), normal_inverse = inverse(normal_sq);
-        const EightLanes sides_sq = // of the two longest, which meet in the sharpest corner
+        const EightLanes sides_sq = // the product of the two longest sides, which meet at the sharpest corner
             hn::Max(hn::Max(hn::Mul(ab_sq, bc_sq), hn::Mul(bc_sq, ca_sq)), hn::Mul(ca_sq, ab_sq));
         const auto has_plane = hn::Lt(sides_sq, hn::Mul(normal_sq, eight(kThin)));
         const EightLanes past_ab = fused_dot(a, fused_cross(ab, normal));
@@ -224,7 +224,7 @@ class NearMeasure {
             hn::Min(hn::Min(to_edge_sq(a, ab, ab_sq), to_edge_sq(b, bc, bc_sq)), to_edge_sq(c, ca, ca_sq));
         const EightLanes distance_sq = hn::IfThenElse(above, to_plane, to_edges);
 
-        constexpr float kOffset = 8; // the place is off its lattice point by less
+        constexpr float kOffset = 8; // the place is nearer than this to its lattice point
         const EightLanes scale =
             hn::Add(hn::Add(l1_norm(a), l1_norm(b)), hn::Add(l1_norm(c), eight(kOffset)));
         const EightLanes error_sq = hn::Mul(hn::Mul(scale, scale), eight(0x1p-23F));
@@ -241,14 +241,16 @@ class NearMeasure {
 
     Vec3d place_, exact_stretch_;
     Vec3<std::int32_t> origin_; ///< the lattice point nearest to the place
-    Vec3f stretch_, offset_;    ///< of the place from the origin
-    Vec3f above_, below_;       ///< the place, by a little more and a little less; in the unit of boxes
-    Vec3f per_unit_;            ///< stretched lattice steps
-    Vec3<std::int32_t> reach_low_, reach_high_; ///< of the box around what is within reach, in that unit
+    Vec3f stretch_, offset_;    ///< stretch; the place relative to the origin
+    Vec3f above_, below_;       ///< slightly more and slightly less than the place; in the unit of boxes
+    Vec3f per_unit_;            ///< the stretched unit of boxes, in lattice steps
+    Vec3<std::int32_t> reach_low_,
+        reach_high_; ///< the box around everything within reach, in the unit of boxes
 };
 
-/// Of a place afar: the excess that nearest.cpp explains. On a triangle it is least at a corner, but for its
-/// square term: with edges no longer than s that takes off at most s^2 / 2 d.
+/// Measures from a distant place by the excess that nearest.cpp explains. On a triangle it is least at a
+/// corner, except for its square term, which lowers it by at most s^2 / 2 d if the edges are no longer than
+/// s.
 class AfarMeasure {
   public:
     explicit AfarMeasure(const Vec3d& place)
@@ -260,7 +262,7 @@ class AfarMeasure {
         return static_cast<float>((distance_sq - distance_ * distance_) / (2 * distance_)) + kSlack;
     }
 
-    /// No leaf is.
+    /// No leaf counts as close by.
     static float close_by(const ExactMapView& /*map*/) { return -kFarthest; }
 
     double distance_sq(const ExactMapView& map, std::uint32_t face) const {
@@ -296,7 +298,7 @@ class AfarMeasure {
     }
 
   private:
-    static constexpr float kSlack = 1; ///< lattice steps, more than is rounded
+    static constexpr float kSlack = 1; ///< lattice steps; more than the rounding errors
 
     HWY_INLINE EightLanes excess(EightLanes coordinate, float direction) const {
         return hn::Mul(coordinate, hn::MulSub(coordinate, eight(curvature_), eight(direction)));
@@ -312,12 +314,12 @@ class AfarMeasure {
     float reach_ = 0;
 };
 
-/// Moves the chosen lanes to the beginning; what follows them is arbitrary.
+/// Moves the chosen lanes to the beginning; the lanes after them are arbitrary.
 class EightCompressor {
   public:
     using Numbers = EightNumbers;
     explicit EightCompressor(hn::Mask<Numbers> chosen)
-#if HWY_TARGET == HWY_AVX3 // where Ints are wider
+#if HWY_TARGET == HWY_AVX3 // for which Ints are wider
         : chosen_(chosen) {
     }
     std::size_t count() const {
@@ -344,18 +346,20 @@ class EightCompressor {
 #endif
 };
 
-/// nearest_face() of one place: the lanes are a node's boxes and a leaf's faces. It takes no neighbours.
+/// nearest_face() of one place: the lanes are the boxes of a node or the faces of a leaf, so it needs no
+/// neighbouring places.
 ///
-/// A first leaf gives a bound, which is good where that leaf is near. Within it the leaves are listed,
-/// without a branch that depends on the boxes, and then visited, the nearest first.
-/// @pre the map has faces for one leaf at least
+/// A first leaf gives a bound, which is good if that leaf is near. The leaves within the bound are listed,
+/// without a branch that depends on the boxes, and then visited, nearest first.
+/// @pre the map has enough faces to fill a leaf
 template <typename Measure>
 class OnePlaceSearch {
   public:
     OnePlaceSearch(const ExactMapView& map, const Measure& measure) : map_(map), measure_(measure) {}
 
-    /// @param near_leaf    to begin with, or kNoLeaf
-    /// @param limit        what is beyond it in the measure is surely farther than `farthest_sq`
+    /// @param near_leaf    the leaf to begin with, or kNoLeaf
+    /// @param limit        bound in the unit of the measure; everything beyond it is certainly farther than
+    ///               `farthest_sq`
     /// @param farthest_sq  squared distance; may be infinite
     std::uint32_t find(std::uint32_t near_leaf, float limit, double farthest_sq) {
         upper_ = limit;
@@ -388,7 +392,7 @@ class OnePlaceSearch {
     using Numbers = EightNumbers;
     using Unsigned = hn::RebindToUnsigned<Eight>;
 
-    /// Leaves and their distances. Written a vector at a time, of which only the first lanes count.
+    /// Leaves and their distances. Stores write a whole vector, of which only the first lanes count.
     struct Leaves {
         std::size_t size = 0;
         std::array<float, kLeafCapacity + kWidth> distances;
@@ -413,7 +417,7 @@ class OnePlaceSearch {
         node_count_ += compress.count();
     }
 
-    /// Of a node above nodes.
+    /// Lists the children of a node whose children are mostly nodes.
     HWY_INLINE void list_children(const TreeNode& node) {
         for (std::size_t lane = 0; lane < kWidth; lane += hn::Lanes(Eight())) {
             const auto children = children_of(node, lane);
@@ -425,7 +429,7 @@ class OnePlaceSearch {
         }
     }
 
-    /// Of a node above leaves.
+    /// Lists the children of a node whose children are mostly leaves.
     HWY_INLINE void list_leaves(const TreeNode& node) {
         constexpr Numbers n;
         for (std::size_t lane = 0; lane < kWidth; lane += hn::Lanes(Eight())) {
@@ -444,7 +448,7 @@ class OnePlaceSearch {
         }
     }
 
-    /// Follows the nearest box down to a leaf.
+    /// Descends to a leaf, always into the nearest box.
     HWY_NOINLINE void visit_leaf_by_descent() {
         std::uint32_t child = 0;
         do {
@@ -463,7 +467,7 @@ class OnePlaceSearch {
         visit_leaf(child - TreeNode::kLeaf);
     }
 
-    /// The nearest first of as many as there are lanes.
+    /// Visits the leaves, as many at a time as there are lanes, nearest first.
     HWY_INLINE void visit_leaves() {
         constexpr Eight f;
         for (std::size_t first = 0; first < leaves_.size; first += hn::Lanes(f)) {
@@ -495,11 +499,11 @@ class OnePlaceSearch {
         return corners.wide.empty() ? vertex_lanes(&corners.narrow[3 * first + k])
                                     : vertex_lanes(&corners.wide[3 * first + k]);
     }
-    /// @param corners  every third number of a vertex
+    /// @param corners  the vertex numbers; every third one is used
     template <typename Vertex>
     HWY_INLINE EightPlaces vertex_lanes(const Vertex* corners) const {
         const std::int32_t* vertices = &map_.vertices.data()->x;
-        // The vertex as the last three numbers of a row.
+        // Loads the vertex as the last three numbers of a row.
         constexpr hn::RebindToSigned<Eight> i;
         const auto [before, x, y, z] =
             load_rows(i, [=](std::size_t lane) HWY_ATTR {
@@ -509,7 +513,7 @@ class OnePlaceSearch {
         return {x, y, z};
     }
 
-    /// A short leaf is filled up with faces of the one before.
+    /// If the last leaf is not full, faces of the leaf before it fill it up.
     HWY_INLINE void visit_leaf(std::uint32_t leaf) {
         const std::size_t first = std::min(std::size_t{leaf} * kWidth, map_.face_count() - kWidth);
         if (size_ == kCapacity) settle();
@@ -548,7 +552,7 @@ class OnePlaceSearch {
         nearest_ = face;
     }
 
-    /// Leaves one candidate of many.
+    /// Reduces the candidates to the nearest one.
     HWY_NOINLINE void settle() {
         visit_candidates([&](std::uint32_t face) { measure_exactly(face); });
         size_ = 0;
@@ -557,7 +561,7 @@ class OnePlaceSearch {
 
     std::uint32_t choose() {
         if (nearest_ == kNoFace && std::isinf(nearest_sq_)) {
-            // There must be one: a single candidate needs no measuring.
+            // There must be a nearest face, so a single candidate need not be measured.
             std::uint32_t count = 0, last = kNoFace;
             visit_candidates([&](std::uint32_t face) {
                 last = face;
@@ -572,22 +576,23 @@ class OnePlaceSearch {
     const ExactMapView& map_;
     Measure measure_;
 
-    float upper_ = 0;                 ///< the nearest face surely lies within it
-    std::uint32_t nearest_ = kNoFace; ///< of those measured exactly
+    float upper_ = 0;                 ///< no nearest face is farther, in the unit of the measure
+    std::uint32_t nearest_ = kNoFace; ///< the nearest of the faces measured exactly
     double nearest_sq_ = 0;
 
-    // Leaves with candidates: their faces' lower bounds.
+    // Leaves with candidates, by their first faces, and lower bounds for their faces.
     static constexpr std::size_t kCapacity = 32;
     std::size_t size_ = 0;
     std::array<std::uint32_t, kCapacity> firsts_;
     alignas(32) std::array<std::array<float, kWidth>, kCapacity> lowers_;
 
-    // The nodes that remain to be visited, at most as many as in walk_near_leaves().
+    // The nodes still to be visited, at most as many as in walk_near_leaves().
     static constexpr std::size_t kMaxDepth = 12;
     std::size_t node_count_ = 0;
     std::array<std::uint32_t, kMaxDepth * kWidth + kWidth> nodes_;
     Leaves leaves_;
-    std::uint32_t first_leaf_ = kNoLeaf, second_leaf_ = kNoLeaf; ///< as children; they have been visited
+    std::uint32_t first_leaf_ = kNoLeaf,
+                  second_leaf_ = kNoLeaf; ///< leaves already visited, numbered as children
 };
 
 } // namespace echinus::HWY_NAMESPACE

@@ -10,19 +10,19 @@
 
 namespace echinus {
 
-/// Where a place of the lattice is among the bands of its cell.
+/// The position of a lattice point among the bands of its cell.
 struct PlaceInBands {
     std::uint32_t cell, part;
     std::int64_t t; ///< distance from the centre in units of ExactMapView::kBandUnit
     BandRange bands;
-    std::uint32_t band; ///< the place is in it or in the gap below it; bands.last: beyond all
+    std::uint32_t band; ///< the place is in this band or in the gap below it; bands.last if beyond all
 
     bool is_beyond_all() const { return band == bands.last; }
     /// @pre !is_beyond_all()
     bool is_in_gap(const ExactMapView& map) const { return t < map.bands[band].lower; }
 };
 
-/// @param t  distance of the place from the centre
+/// @param t  L1 distance of the place from the centre, in units of ExactMapView::kBandUnit
 inline PlaceInBands place_in_bands(const ExactMapView& map, const OctahedralCells::Place& place,
                                    std::int64_t t) {
     PlaceInBands at{place.cell, place.part, t, bands_of_cell(map, place.cell), 0};
@@ -32,9 +32,8 @@ inline PlaceInBands place_in_bands(const ExactMapView& map, const OctahedralCell
 }
 
 /// The winding number around a place, or kUncertain.
-/// @param crossings  int crossings(RaySide, const PlaceInBands&): signed crossings of the place's ray with
-/// the
-///                   faces of its band
+/// @param crossings  int crossings(RaySide, const PlaceInBands&): the signed crossings of the place's ray
+///                   with the faces of its band
 /// @pre !at.is_beyond_all()
 template <typename Crossings>
 int winding_in_bands(const ExactMapView& map, const PlaceInBands& at, const Crossings& crossings) {
@@ -47,9 +46,9 @@ int winding_in_bands(const ExactMapView& map, const PlaceInBands& at, const Cros
 
 inline constexpr std::uint32_t kNoLeaf = UINT32_MAX;
 
-/// A leaf of the face tree with a face near a place: a search that begins there soon has a good bound. The
-/// face is one of the band that the place's ray from the centre meets nearest to it.
-/// @returns kNoLeaf where the ray meets no band with faces
+/// A leaf of the face tree with a face near a place, so that a search that begins there soon has a good
+/// bound. The face is from the band nearest to the place on its ray from the centre.
+/// @returns kNoLeaf if that band has no faces, or there is none
 inline std::uint32_t leaf_near(const ExactMapView& map, const PlaceInBands& at) {
     const bool is_innermost = at.band == at.bands.first;
     const auto is_nearer_to_lower = [&] {
@@ -63,7 +62,7 @@ inline std::uint32_t leaf_near(const ExactMapView& map, const PlaceInBands& at) 
     return first < last ? map.references[first + (last - first) / 2] / kFacesOfLeaf : kNoLeaf;
 }
 
-/// The same for any place.
+/// The same for any place, also beyond the lattice.
 /// @param place  finite
 inline std::uint32_t leaf_near(const ExactMapView& map, const Vec3d& place) {
     constexpr auto kExtent = static_cast<double>(kLatticeExtent);

@@ -16,7 +16,7 @@
 
 namespace echinus {
 
-// Inside or outside, and the nearest way out.
+// Tests for inside or outside, and the nearest way out.
 
 bool contains(const ExactMapView& map, Vec3f point_local) noexcept {
     return (find_side(map, frame_of(map), point_local, false).side & kInsideBit) != 0;
@@ -29,7 +29,7 @@ Containment classify(const ExactMapView& map, Vec3f point_local) noexcept {
 
 namespace {
 
-/// The same as search(point_local), by vector instructions.
+/// The same as search(point_local), computed by vector instructions.
 Contact find_contact(const ContactSearch& search, const Vec3f& point_local) {
     if (!use_kernels()) return search(point_local);
     const ExactMapView& map = search.map();

@@ -13,15 +13,15 @@
 namespace echinus {
 
 // How a face counts for a particle p of the lattice: +1 or -1 if the ray from the origin through p leaves or
-// enters the solid there, on one side of p, else 0. Particle and ray are perturbed together: p counts as p +
-// (e, e^2, e^3), as in directions/face_cone.hpp.
+// enters the solid there, on the given side of p, otherwise 0. Particle and ray are perturbed together: p
+// counts as p + (e, e^2, e^3), as in directions/face_cone.hpp.
 
 enum class RaySide : std::uint8_t {
     Before, ///< between the origin and p
-    Beyond, ///< from p on
+    Beyond, ///< beyond p
 };
 
-/// In integers: the specification.
+/// The specification, in integers.
 inline int crossing_on(RaySide side, const std::array<LatticePoint, 3>& face, const LatticePoint& p) {
     const auto& [a, b, c] = face;
     const FaceCone cone(a, b, c);
@@ -35,12 +35,12 @@ inline int crossing_on(RaySide side, const std::array<LatticePoint, 3>& face, co
     return cone.outward() ? 1 : -1;
 }
 
-/// The same by a filter in double, which decides all but one face in a million, without a branch that a
+/// The same by a filter in double, which decides all but one face in a million without a branch that a
 /// processor could mispredict.
 ///
-/// Corners are sheared along p until p lies on its longest axis k: a point v goes to v - p * (v_k / p_k), and
-/// the ray's way past an edge is an area in the plane across k (as in Woop, Benthin and Wald, "Watertight
-/// Ray/Triangle Intersection", 2013). Rounding is bounded throughout.
+/// Corners are sheared along p until p lies on its longest axis k: a point v becomes v - p * (v_k / p_k), and
+/// the side on which the ray passes an edge is the sign of an area in the plane perpendicular to k (as in
+/// Woop, Benthin and Wald, "Watertight Ray/Triangle Intersection", 2013). Rounding is bounded throughout.
 class CrossingFilter {
   public:
     explicit CrossingFilter(const LatticePoint& p) {
@@ -59,27 +59,27 @@ class CrossingFilter {
     }
 
     struct Verdict {
-        int crossing; ///< as crossing_on(), if it is sure
+        int crossing; ///< the result of crossing_on(), if sure
         bool sure;
     };
 
-    /// @param a, b, c  corners of the face: x, y, z each
+    /// @param a, b, c  corners of the face, three coordinates each
     Verdict operator()(RaySide side, const std::int32_t* a, const std::int32_t* b,
                        const std::int32_t* c) const {
         const Sheared pa = shear(a), pb = shear(b), pc = shear(c);
-        // Twice the areas that the ray cuts off at each edge: below 2^42.
+        // Twice the areas between the ray and each edge; below 2^42.
         const double bc = pb.u * pc.v - pb.v * pc.u;
         const double ca = pc.u * pa.v - pc.v * pa.u;
         const double ab = pa.u * pb.v - pa.v * pb.u;
         const double least = std::min(std::min(bc, ca), ab);
         const double most = std::max(std::max(bc, ca), ab);
-        // & and |, not && and ||: every comparison is made, so that there is no branch to mispredict.
+        // & and | instead of && and || evaluate every comparison, so that there is no branch to mispredict.
         const bool front = least > kAreaError;
         const bool hit = front | (most < -kAreaError);
         const bool missed = (most > kAreaError) & (least < -kAreaError);
-        // How far along k the plane is met, counted from p and from the origin, times the areas' sum: both
-        // have its sign if the plane is met beyond p, only the second has if it is met before p, and none if
-        // it is met behind the origin.
+        // The positions at which the ray meets the plane, along k and relative to p and to the origin, times
+        // the sum of the areas: both have its sign if the plane is met beyond p, only the second has it if
+        // the plane is met before p, and neither if it is met behind the origin.
         const double from_p = bc * pa.ahead + ca * pb.ahead + ab * pc.ahead;
         const double from_origin = from_p + (bc + ca + ab) * length_;
         const bool beyond = (from_p > 0) == front;
@@ -94,7 +94,7 @@ class CrossingFilter {
 
   private:
     struct Sheared {
-        double u, v, ahead; ///< ahead: how much farther than p along axis k, in the direction of p
+        double u, v, ahead; ///< ahead: how much farther than p a point is along axis k, in the direction of p
     };
 
     Sheared shear(const std::int32_t* corner) const {
@@ -102,34 +102,35 @@ class CrossingFilter {
         return {u - u_per_k_ * k, v - v_per_k_ * k, (k - pk_) * sign_};
     }
 
-    // Sheared coordinates, below 2^20, are off by less than 2^-31; so products and areas by less than 2^-9.
-    // Times a difference below 2^20.1, and three of them added: less than 2^13; counted from the
-    // origin, twice that.
+    // Sheared coordinates, below 2^20, are off by less than 2^-31, so products and areas are off by less than
+    // 2^-9. from_p adds three products of an area and a difference below 2^20.1, so its error is less than
+    // 2^13; that of from_origin is less than twice as large.
     static constexpr double kAreaError = 0x1p-9;
     static constexpr double kVolumeError = 0x1p14;
 
-    static constexpr std::array<std::uint32_t, 4> kNext{1, 2, 0, 1}; ///< axis k is followed by these two
+    static constexpr std::array<std::uint32_t, 4> kNext{
+        1, 2, 0, 1}; ///< the two axes that follow axis k cyclically are kNext[k] and kNext[k + 1]
 
     std::uint32_t u_axis_, v_axis_, k_axis_;
     double u_per_k_, v_per_k_, pk_, length_;
     int sign_;
 };
 
-// Where a segment of the lattice crosses a face, decided exactly. Both ends are perturbed alike: p counts as
-// p + (e, e^2, e^3), so that along a segment the signed crossings add up to the change of the winding
-// number.
+// Where a segment of the lattice crosses a face, decided exactly. Both endpoints are perturbed alike: p
+// counts as p + (e, e^2, e^3), so that the signed crossings along a segment add up to the change of the
+// winding number.
 
-/// A crossing at distance / (distance of both ends) of the way.
+/// A crossing, at the fraction from_distance / way of the segment.
 struct SegmentCrossing {
-    LatticePoint normal;        ///< of the face, not of unit length
-    std::int64_t from_distance; ///< of `from` along the normal; below 2^63
-    std::int64_t way;           ///< how far the segment goes against the normal: not 0
+    LatticePoint normal;        ///< normal of the face, not of unit length
+    std::int64_t from_distance; ///< how far `from` lies in front of the plane, along the normal; below 2^63
+    std::int64_t way;           ///< how far the segment runs against the normal; not 0
 
     bool entering() const { return way > 0; }
     double fraction() const { return static_cast<double>(from_distance) / static_cast<double>(way); }
 
-    /// Which comes first? Where both are at one place, the perturbation decides: it moves crossing k by
-    /// normal_k . (e, e^2, e^3) / way_k.
+    /// Does this crossing come first? If both are at the same place, the perturbation decides: it moves
+    /// crossing k by normal_k . (e, e^2, e^3) / way_k.
     bool before(const SegmentCrossing& other) const {
         const int by_place = compare(from_distance, other.from_distance, other);
         if (by_place != 0) return by_place < 0;
@@ -148,7 +149,7 @@ struct SegmentCrossing {
     }
 };
 
-/// @param from, to  components within kLatticeExtent + 1: then every number stays below 2^63
+/// @param from, to  components within kLatticeExtent + 1, so that every number stays below 2^63
 inline std::optional<SegmentCrossing> crossing_with_face(const std::array<LatticePoint, 3>& face,
                                                          const LatticePoint& from, const LatticePoint& to) {
     const auto& [a, b, c] = face;
@@ -160,7 +161,7 @@ inline std::optional<SegmentCrossing> crossing_with_face(const std::array<Lattic
     const bool to_front = to_distance != 0 ? to_distance > 0 : at_zero > 0;
     if (from_front == to_front) return std::nullopt;
     // The segment's line passes the edge from v to w on the side given by the sign of way . ((v - from) x (w
-    // - from)). No edge is parallel to it, or both ends would be on one side.
+    // - from)). No edge is parallel to the line, or both endpoints would be on the same side of the plane.
     const LatticePoint way = to - from;
     const auto passes_inside = [&](const LatticePoint& v, const LatticePoint& w) {
         const std::int64_t volume = dot(way, cross(v - from, w - from));

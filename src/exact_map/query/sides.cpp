@@ -1,7 +1,7 @@
 // A batch is answered in pieces small enough for the first-level cache. BandSearch finds the gap or the band
 // that each particle is in. A particle in a gap has the gap's winding number; for one in a band, BandWindings
-// counts crossings of its ray with the band's faces. Cases that single precision cannot decide fall back to
-// the scalar query.
+// counts the crossings of its ray with the band's faces. Cases that single precision cannot decide are left
+// to the scalar query.
 
 #include "exact_map/query/sides.hpp"
 
@@ -16,7 +16,7 @@
 #define HWY_TARGET_INCLUDE "exact_map/query/sides.cpp"
 #include <hwy/foreach_target.h>
 
-// After foreach_target.h, which includes this file once for each instruction set.
+// Must follow foreach_target.h, which includes this file once per instruction set.
 #include "exact_map/query/band_search-inl.hpp"
 #include "exact_map/query/band_windings-inl.hpp"
 #include "simd/dispatch.hpp"
@@ -43,13 +43,12 @@ namespace echinus::HWY_NAMESPACE {
 
 namespace {
 
-/// Answers particles a piece at a time.
+/// Answers a batch piece by piece.
 class SideFinder {
   public:
     explicit SideFinder(const ExactMapView& map) : map_(map) {}
 
-    /// Any number of particles: those at the end that do not fill a vector are filled up with copies of the
-    /// last.
+    /// Answers any number of particles; copies of the last one fill up the last vector.
     void find(const StridedSpan<const Vec3f>& points, std::span<Side> sides) {
         constexpr std::size_t kCapacity = BandGroup::kCapacity;
         const std::size_t lanes = hn::Lanes(Floats());
@@ -68,7 +67,7 @@ class SideFinder {
     }
 
   private:
-    /// Whole vectors of particles, at most BandGroup::kCapacity.
+    /// Answers whole vectors of particles, at most BandGroup::kCapacity particles.
     void find_piece(const StridedSpan<const Vec3f>& points, std::span<Side> sides) {
         search_.find(points);
         std::fill(sides.begin(), sides.end(), Side{0}); // beyond all bands

@@ -7,15 +7,15 @@
 #include <cstdint>
 #include <span>
 
-/// On which side of the surface particles are: winding numbers under the map's rule.
+/// On which side of the surface particles lie, by their winding numbers and the map's rule.
 namespace echinus {
 
-/// The answer of classify(), in bits.
+/// The answer of classify() as bits.
 using Side = std::uint8_t;
 inline constexpr Side kInsideBit = 1;
 inline constexpr Side kUncertainBit = 2;
 
-/// Such a point is nowhere, so no answer about it is certain.
+/// A point with a NaN has no position, so no answer about it is certain.
 inline bool has_nan(const Vec3f& point) {
     return point.x != point.x || point.y != point.y || point.z != point.z;
 }
@@ -29,12 +29,12 @@ inline Side side_at(const ExactMapView& map, const LatticeFrame& frame, const Ve
 
 struct SideAndLeaf {
     Side side;
-    std::uint32_t near_leaf; ///< leaf_near(), or kNoLeaf where it has not been looked for
+    std::uint32_t near_leaf; ///< leaf_near(), or kNoLeaf if it was not determined
 };
 
-/// side_at() by vector instructions, whose lanes are the faces of one band, and for a particle inside a leaf
-/// near it.
-/// @param leaf_outside  also for a particle outside
+/// side_at() by vector instructions, whose lanes are the faces of one band; for a particle inside, also a
+/// leaf near it.
+/// @param leaf_outside  whether to find a leaf for a particle outside, too
 SideAndLeaf find_side(const ExactMapView& map, const LatticeFrame& frame, const Vec3f& point_local,
                       bool leaf_outside) noexcept;
 

@@ -9,9 +9,8 @@
 /// contact() and contacts_batch() of exact_map.hpp in a world that is scaled along the map's axes, for
 /// colliders.
 ///
-/// The distance that is least, the depth, the normal and the margin are those of the stretched mesh; points
-/// are local.
-/// @param stretch  the world's scale along the map's axes: not 0; a negative one mirrors
+/// The nearest point, depth, normal and margin are those of the stretched mesh; points are local.
+/// @param stretch  the world's scale along the map's axes; no component is 0, and a negative one mirrors
 namespace echinus {
 
 Contact stretched_contact(const ExactMapView& map, const Vec3f& point_local, float margin,

@@ -1,4 +1,5 @@
-// Triangles against the surface: the face tree's boxes around the triangle's box, then each face.
+// Tests triangles against the surface: first the face tree's boxes against the triangle's box, then each
+// face.
 
 #include "exact_map/layout.hpp"
 #include "exact_map/query/leaf_bounds.hpp"
@@ -26,7 +27,7 @@ bool all_finite(const TrianglePoints& t) {
     return is_finite(t[0]) && is_finite(t[1]) && is_finite(t[2]);
 }
 
-/// Beyond the range of float: the end of the range.
+/// The largest float not above the value; values beyond the range of float become the end of the range.
 float rounded_down(double value) {
     constexpr double kMost = std::numeric_limits<float>::max();
     const auto nearest = static_cast<float>(std::clamp(value, -kMost, kMost));
@@ -48,9 +49,10 @@ Vec3f rounded_up(const Vec3d& v) {
 /// A triangle in lattice steps, and the box around it.
 struct PlacedTriangle {
     TriangleCorners corners;
-    Vec3f low, high;                  ///< rounded outwards
-    double rounding;                  ///< see rounding_of()
-    std::optional<NearTriangle> near; ///< for kernels; absent when they are off, it is far away or large
+    Vec3f low, high; ///< limits of the box, rounded outwards
+    double rounding; ///< see rounding_of()
+    std::optional<NearTriangle>
+        near; ///< for kernels; none if they are off, or the triangle is far away or large
 
     PlacedTriangle(const LatticeFrame& frame, const TrianglePoints& points)
         : PlacedTriangle(TriangleCorners{frame.to_lattice(points[0]), frame.to_lattice(points[1]),
@@ -78,7 +80,7 @@ struct PlacedTriangle {
 };
 
 /// Lower bounds of the squared distances between the box of a triangle and those of a node's children, in
-/// single precision: boxes are a step larger, and what the sums lose by rounding is taken off.
+/// single precision: boxes are enlarged by a step, and the sums are reduced by what rounding may add.
 class BoxGaps {
   public:
     BoxGaps(const Vec3f& low, const Vec3f& high) : low_(low), high_(high) {}
@@ -109,7 +111,7 @@ class BoxGaps {
     Vec3f low_, high_;
 };
 
-/// The same between a box and that of one face.
+/// The same between a box and the box of one face.
 float box_gap_sq(const std::array<LatticePoint, 3>& face, const Vec3f& low, const Vec3f& high) {
     const auto& [a, b, c] = face;
     const auto gap = [](std::int64_t p, std::int64_t q, std::int64_t r, float box_low, float box_high) {
@@ -123,9 +125,9 @@ float box_gap_sq(const std::array<LatticePoint, 3>& face, const Vec3f& low, cons
     return (x * x + y * y + z * z) * (1 - 0x1p-20F);
 }
 
-/// Fractions of the way, from below, at which the box around a moving triangle comes within `reach` of those
-/// of a node's children; more than 1 for those to which it does not come. The box's sides each move as the
-/// fastest corner does.
+/// Lower bounds of the fractions of the motion at which the box around a moving triangle comes within `reach`
+/// of the boxes of a node's children; more than 1 if it does not. Each side of the box moves like the corner
+/// that moves fastest in its direction.
 class BoxArrivals {
   public:
     BoxArrivals(const MovingTriangle& moving, double start, double reach) : start_(start), reach_(reach) {
@@ -167,7 +169,7 @@ class BoxArrivals {
         return std::minmax({t[0].*axis, t[1].*axis, t[2].*axis});
     }
 
-    /// Keeps the times at which a gap that closes at a speed is closed.
+    /// Restricts an interval of time to the part in which a gap that shrinks at the given speed is closed.
     static void clip(double gap, double speed, double& after, double& until) {
         if (speed > 0)
             after = std::max(after, gap / speed);
@@ -181,16 +183,17 @@ class BoxArrivals {
     std::array<Sides, 3> sides_;
 };
 
-/// Lattice steps: farther away nothing is looked for. Its square is a float.
+/// Nothing farther than this many lattice steps is searched for. Its square fits into a float.
 constexpr double kFarthest = 1e18;
 
-/// A float above a square, finite so that missing children lie beyond it. @pre distance <= kFarthest
+/// A float above the square of a distance; finite, so that missing children lie beyond it. @pre distance <=
+/// kFarthest
 float bound_of(double distance) {
     return static_cast<float>(distance * distance) * (1 + 0x1p-20F);
 }
 
-/// A lower bound by vector instructions must be above a distance by this factor to decide as
-/// distance_from_below() does, whose results may be below the distance by rounding.
+/// Lower bounds from vector instructions are multiplied by this factor before they are compared with a limit,
+/// because distance_from_below(), which decides in the end, may round its result down.
 constexpr double kClear = 1 - 0x1p-12;
 
 double distance_from_below(const ExactMapView& map, std::uint32_t face, const PlacedTriangle& triangle) {
@@ -198,8 +201,8 @@ double distance_from_below(const ExactMapView& map, std::uint32_t face, const Pl
     return distance_from_below(triangle.corners, {Vec3d(a), Vec3d(b), Vec3d(c)}, triangle.rounding);
 }
 
-/// Calls visit(LeafFaces, LeafBounds) for the leaves with a face whose box is not beyond `bound`, which visit
-/// may lower.
+/// Calls visit(LeafFaces, LeafBounds) for the leaves that have a face whose box is not beyond `bound`;
+/// `visit` may lower the bound.
 template <typename Visit>
 void visit_near_leaves(const ExactMapView& map, const PlacedTriangle& triangle, const float& bound,
                        const Visit& visit) {
@@ -212,7 +215,7 @@ void visit_near_leaves(const ExactMapView& map, const PlacedTriangle& triangle, 
     });
 }
 
-/// The nearest face within `farthest`, and its distance from below; lattice steps.
+/// The nearest face within `farthest`, and a lower bound of its distance in lattice steps.
 struct NearestFace {
     std::uint32_t face;
     double distance;
@@ -221,7 +224,7 @@ struct NearestFace {
 std::optional<NearestFace> nearest_face(const ExactMapView& map, const PlacedTriangle& triangle,
                                         double farthest) {
     std::optional<NearestFace> nearest;
-    double limit = farthest; // not below the distance of the nearest face, where there is one within farthest
+    double limit = farthest; // not below the distance of the nearest face, if there is one within `farthest`
     float bound = bound_of(limit);
     visit_near_leaves(map, triangle, bound, [&](const LeafFaces& faces, const LeafBounds& bounds) {
         for (std::uint32_t lane = 0; lane < faces.last - faces.first; ++lane)
@@ -241,18 +244,18 @@ std::optional<NearestFace> nearest_face(const ExactMapView& map, const PlacedTri
     return nearest;
 }
 
-/// The face to which a moving triangle comes first, and when.
+/// The face that a moving triangle reaches first, and the fraction of the motion at which it does.
 struct FirstFace {
     std::uint32_t face;
     double fraction;
 };
 
-/// Face by face. @param start  up to there no face is met
+/// Tests face by face. @param start  the fraction of the motion up to which no face is met
 std::optional<FirstFace> first_face(const ExactMapView& map, const MovingTriangle& moving, double start,
                                     const ArrivalTolerance& tolerance) {
     std::optional<FirstFace> first;
     float bound = 1;
-    // Boxes lie within a step of their faces; the rest is more than rounding.
+    // Boxes lie within a step of their faces; the rest exceeds the rounding errors.
     const BoxArrivals arrivals(moving, start, 1 + 8 * tolerance.reach);
     walk_near_leaves(map, bound, arrivals, [&](const LeafFaces& faces) {
         for (std::uint32_t face = faces.first; face < faces.last; ++face) {
@@ -298,7 +301,7 @@ bool intersects(const ExactMapView& map, const TrianglePoints& triangle_local) n
     if (!all_finite(triangle.corners)) return false;
     const Vec3f low{std::min({a.x, b.x, c.x}), std::min({a.y, b.y, c.y}), std::min({a.z, b.z, c.z})};
     const Vec3f high{std::max({a.x, b.x, c.x}), std::max({a.y, b.y, c.y}), std::max({a.z, b.z, c.z})};
-    float bound = 0; // less than 0: found
+    float bound = 0; // below 0 once a face is found
     walk_near_leaves(map, bound, BoxGaps(low, high), [&](const LeafFaces& faces) {
         for (std::uint32_t face = faces.first; face < faces.last && bound == 0; ++face) {
             const auto corners = face_corners(map, face);
@@ -336,7 +339,7 @@ TriangleSweepHit sweep(const ExactMapView& map, const TrianglePoints& from_local
         extent = std::max(extent, extent_of(moving.from[k]) + extent_of(to));
     }
     if (extent > kFarthest / 2) return {};
-    // A place on the way is off by less than 2^-47 of the extent, however near it is.
+    // A position along the path is off by less than 2^-47 of the extent, however close it is.
     const ArrivalTolerance tolerance{.reach = std::max(kArrived, extent * 0x1p-46),
                                      .rounded_extent =
                                          extent_of(frame.centre) * frame.inverse_step + extent * 0x1p-1};
@@ -387,7 +390,8 @@ void sweep_batch(const ExactMapView& map, StridedSpan<const TrianglePoints> from
 void faces_within_batch(const ExactMapView& map, StridedSpan<const Vec3f> vertices_local,
                         std::span<const Triangle> triangles, float reach, FaceLists& lists,
                         unsigned thread_count) {
-    // Blocks of a fixed size, so that what they find can be put one after the other.
+    // Blocks of a fixed size, each with its own list, so that the lists can be concatenated in order for any
+    // number of threads.
     constexpr std::size_t kBlockSize = 256;
     struct Block {
         std::vector<std::uint32_t> faces;

@@ -1,5 +1,5 @@
-// Where a particle's path first crosses the surface: the face tree's boxes along the path, nearest first, and
-// an exact test of each face.
+// Finds where a particle's path first crosses the surface: visits the face tree's boxes along the path,
+// nearest first, and tests each face exactly.
 
 #include "exact_map/layout.hpp"
 #include "exact_map/query/nearest.hpp"
@@ -17,8 +17,8 @@ namespace echinus {
 
 namespace {
 
-/// A step beyond the lattice: an end that is cut off there is outside, and what contains() takes to lie on
-/// the lattice is not cut off.
+/// One step beyond the lattice, so that an endpoint cut off there is outside, and points that contains()
+/// takes to be on the lattice are not cut off.
 constexpr std::int64_t kLatticeLimit = kLatticeExtent + 1;
 constexpr auto kLimit = static_cast<double>(kLatticeLimit);
 
@@ -30,13 +30,13 @@ Axis longest_axis(const Vec3d& v) {
     return y >= z ? &Vec3d::y : &Vec3d::z;
 }
 
-/// The place on the line through two points with this coordinate along an axis; in lattice steps.
+/// The point at which the line through two points has this coordinate along an axis; in lattice steps.
 ///
-/// Seen from the centre C, all places p of the line have the moment p x way = (a - C) x (b - C), which is
-/// a x b - C x way. Products of floats are exact in double, so that it is off by no more than a few roundings
-/// of itself and of |C| |way|, however far away a and b are. With the axis e, e x (p x way) is
-/// p (e.way) - way (e.p).
-/// @param axis  along which the line advances most: then no error grows in the division
+/// Relative to the centre C, all points p of the line have the same moment p x way = (a - C) x (b - C), which
+/// equals a x b - C x way. Products of floats are exact in double, so the moment is off by no more than a few
+/// roundings of itself and of |C| |way|, however far away a and b are. With the axis e, e x (p x way) is p
+/// (e.way) - way (e.p).
+/// @param axis  the axis along which the line advances most, so that the division does not amplify errors
 Vec3d place_on_line(const LatticeFrame& frame, const Vec3d& a, const Vec3d& b, Axis axis, double coordinate) {
     const Vec3d way = b - a;
     const Vec3d moment = (cross(a, b) - cross(frame.centre, way)) * frame.inverse_step;
@@ -45,9 +45,9 @@ Vec3d place_on_line(const LatticeFrame& frame, const Vec3d& a, const Vec3d& b, A
     return (way * coordinate + cross(unit, moment)) * (1 / way.*axis);
 }
 
-/// Moves one end of a segment towards the other, to where the lattice begins: beyond there is no surface.
-/// Measured from the other end, so that one that lies on the lattice leaves the cut exact.
-/// @return false when the whole segment lies beyond
+/// Moves one endpoint of a segment towards the other, to the limit of the lattice: there is no surface
+/// beyond. The cut is measured from the other endpoint, so that it is exact if that one lies on the lattice.
+/// @return false if the whole segment lies beyond the lattice
 bool cut_to_lattice(Vec3d& end, const Vec3d& other) {
     double share = 1;
     for (Axis c : {&Vec3d::x, &Vec3d::y, &Vec3d::z}) {
@@ -60,15 +60,15 @@ bool cut_to_lattice(Vec3d& end, const Vec3d& other) {
     return true;
 }
 
-/// Are cuts from here off by much less than a lattice step?
+/// Is a place close enough for cuts from here to be off by much less than a lattice step?
 bool is_near(const Vec3d& place) {
     constexpr double kNear = 0x1p24;
     return (std::fabs(place.x) <= kNear) & (std::fabs(place.y) <= kNear) & (std::fabs(place.z) <= kNear);
 }
 
-/// Cuts a segment across the axis along which it advances most. What then does not lie beyond one side of the
-/// lattice is near.
-/// @return false when the whole segment lies beyond
+/// Cuts a segment at the limits of the axis along which it advances most. Afterwards, endpoints are near
+/// unless the segment lies beyond one side of the lattice.
+/// @return false if the whole segment lies beyond the lattice
 bool cut_far_segment(const LatticeFrame& frame, const Vec3f& from_local, const Vec3f& to_local, Vec3d& start,
                      Vec3d& end) {
     const Axis axis = longest_axis(end - start);
@@ -89,8 +89,8 @@ LatticePoint clamped(const LatticePoint& p) {
     return {clamp(p.x), clamp(p.y), clamp(p.z)};
 }
 
-/// Parameters at which a segment enters the boxes of a node's children, from below; more than 1 for those
-/// that it does not meet. Boxes are widened by a step, far more than single precision loses.
+/// Lower bounds of the parameters at which a segment enters the boxes of a node's children; more than 1 for
+/// boxes that it misses. Boxes are enlarged by one step, far more than the errors of single precision.
 class BoxEntries {
   public:
     BoxEntries(const LatticePoint& from, const LatticePoint& to) : from_(from), way_(to - from) {}
@@ -111,7 +111,7 @@ class BoxEntries {
     static constexpr float kMissed = 2;
     static constexpr float kUnit = ExactMapView::kBoxUnit;
     static constexpr float kSlack = 1;
-    /// Of parameters: a division and a multiplication are off by 2^-23.
+    /// The slack of parameters: a division and a multiplication are off by 2^-23.
     static constexpr float kParameterSlack = 1e-6F;
 
     static void clip(std::int16_t low, std::int16_t high, float from, float way, float& enter, float& leave) {
@@ -135,7 +135,7 @@ struct FaceCrossing {
     std::uint32_t face;
 };
 
-/// Not inlined: what comes before it would cost the search registers.
+/// Not inlined, since otherwise the code before it would cost the search registers.
 [[gnu::noinline]] std::optional<FaceCrossing>
 first_crossing(const ExactMapView& map, const LatticePoint& from, const LatticePoint& to) {
     std::optional<FaceCrossing> first;
@@ -151,8 +151,9 @@ first_crossing(const ExactMapView& map, const LatticePoint& from, const LatticeP
     return first;
 }
 
-/// Both ends in one gap of one cell: the region between planes through the centre and two planes across is
-/// convex, so it contains the whole path, and no surface. Most paths of a cloth's particles end here.
+/// Do both endpoints lie in the same gap of one cell? The region between planes through the centre and two
+/// parallel planes across them is convex, so it contains the whole path, and no surface. Most paths of a
+/// cloth's particles end here.
 bool stays_in_gap(const ExactMapView& map, const LatticePoint& from, const LatticePoint& to) {
     const OctahedralCells cells(map.divisions);
     const std::uint32_t cell = cells.locate(from).cell;
@@ -187,7 +188,7 @@ SweepHit sweep(const ExactMapView& map, Vec3f from_local, Vec3f to_local) noexce
     const double share = std::clamp(first->crossing.fraction(), 0.0, 1.0);
     const Vec3d place = start + (end - start) * share;
     const double fraction = std::min(1.0, length(place - from_place) / length(to_place - from_place));
-    // Faces may have the opposite orientation: what counts is which side of this one is solid.
+    // Faces may have the opposite orientation; only the side of this face that is solid matters.
     const std::int64_t before = winding_at(map, from, WindingGoal::Turn::AtEveryHalf).number;
     const std::int64_t after = before + (first->crossing.entering() ? 1 : -1);
     const bool inside_before = is_inside(map.rule, before), inside_after = is_inside(map.rule, after);

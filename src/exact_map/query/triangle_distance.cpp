@@ -7,7 +7,7 @@ namespace echinus {
 
 namespace {
 
-/// The shortest vector found so far between a point of the one triangle and a point of the other.
+/// The shortest vector found so far between points of two triangles a and b.
 struct Shortest {
     Vec3d vector; ///< from b to a
     double length_sq = std::numeric_limits<double>::infinity();
@@ -20,8 +20,8 @@ struct Shortest {
     }
 };
 
-/// Between two segments, from p along u and from q along v (Ericson, Real-Time Collision Detection, 2005,
-/// section 5.1.9).
+/// The shortest vector between two segments, from p along u and from q along v (Ericson, Real-Time Collision
+/// Detection, 2005, section 5.1.9).
 Vec3d between_segments(const Vec3d& p, const Vec3d& u, const Vec3d& q, const Vec3d& v) {
     const Vec3d r = p - q;
     const double uu = dot(u, u), uv = dot(u, v), vv = dot(v, v), ur = dot(u, r), vr = dot(v, r);
@@ -35,8 +35,8 @@ Vec3d between_segments(const Vec3d& p, const Vec3d& u, const Vec3d& q, const Vec
     return r + u * s - v * t;
 }
 
-/// Offers the vector from the plane of a triangle to a point above its inside; there is none from a triangle
-/// without area. Elsewhere edges are nearer.
+/// Offers the vector from the plane of a triangle to a point above its interior. Otherwise, and for a
+/// triangle without area, an edge is nearer.
 template <typename Offer>
 void offer_height(const TriangleCorners& triangle, const Vec3d& normal, const Vec3d& point,
                   const Offer& offer) {
@@ -62,8 +62,8 @@ Vec3d shortest_between(const TriangleCorners& a, const TriangleCorners& b) {
     return shortest.vector;
 }
 
-/// How far the triangles are apart along a direction, of whatever length, seen from b. Negative: they
-/// overlap.
+/// The distance between the triangles along a direction of any length, from b towards a; negative if they
+/// overlap along it.
 double gap_along(const Vec3d& direction, const TriangleCorners& a, const TriangleCorners& b) {
     const double size = length(direction);
     if (!(size > 0)) return 0;
@@ -72,7 +72,7 @@ double gap_along(const Vec3d& direction, const TriangleCorners& a, const Triangl
     return (low - high) / size;
 }
 
-/// Along every direction that can be the right one where nearest points are ill-determined, because edges are
+/// Tries every direction that can be the right one if nearest points are ill-determined because edges are
 /// nearly parallel or triangles are slivers.
 TriangleGap careful_gap(const TriangleCorners& a, const TriangleCorners& b) {
     TriangleGap widest;
@@ -90,7 +90,8 @@ TriangleGap careful_gap(const TriangleCorners& a, const TriangleCorners& b) {
         for (std::size_t j = 0; j < 3; ++j) {
             const Vec3d u = a[(i + 1) % 3] - a[i], v = b[(j + 1) % 3] - b[j];
             try_both(cross(u, v));
-            try_both(cross(cross(u, b[j] - a[i]), u)); // across the edge of a, towards the corner of b
+            try_both(
+                cross(cross(u, b[j] - a[i]), u)); // perpendicular to the edge of a, towards the corner of b
             try_both(cross(cross(v, a[i] - b[j]), v));
             try_both(b[j] - a[i]);
         }
@@ -118,11 +119,11 @@ double distance_from_below(const TriangleCorners& a, const TriangleCorners& b, d
 namespace {
 
 struct Edge {
-    std::size_t start, end; ///< corners
-    double difference;      ///< of their ways
+    std::size_t start, end; ///< corner numbers
+    double difference;      ///< the length of the difference of their displacements
 };
 
-/// The edge whose ends move the most differently.
+/// The edge whose endpoints differ most in their displacements.
 Edge widest_apart(const TriangleCorners& way) {
     Edge widest{0, 1, 0};
     for (std::size_t k = 0; k < 3; ++k) {
@@ -139,7 +140,8 @@ MovingTriangle half_of(const MovingTriangle& whole, std::size_t kept, std::size_
     return half;
 }
 
-/// How long no corner comes to the plane that bounds a gap on the side of the standing triangle.
+/// How long it takes until a corner reaches the plane that bounds a gap on the side of the stationary
+/// triangle.
 double time_to_plane(const TriangleCorners& moving, const TriangleCorners& way,
                      const TriangleCorners& standing, const Vec3d& direction, double rounding) {
     const Vec3d unit = direction * (1 / length(direction));

@@ -18,36 +18,35 @@
 
 namespace echinus {
 
-// How the border of an open surface affects winding numbers.
+// The effect of the border of an open surface on winding numbers.
 //
-// Close the surface with a cone: a triangle from each border edge to the origin of the lattice. The rays
-// from the origin see that cone edge-on and never cross it, so the signed crossings of a particle's ray
-// beyond the particle are the winding number of the closed whole, an integer. The generalised winding number
-// of the surface alone (Jacobson et al. 2013) is that integer less the cone's part:
+// Close the surface with a cone: a triangle from each border edge to the origin of the lattice. The rays from
+// the origin see that cone edge-on and never cross it, so the signed crossings of a particle's ray beyond the
+// particle are the winding number of the closed surface, an integer. The generalised winding number of the
+// open surface (Jacobson et al. 2013) is that integer minus the contribution of the cone:
 //
 //     w(p) = crossings_beyond(p) + border_part(p),  border_part = - sum of solid angles of the cone / 4 pi.
 //
-// The build and, where rounding leaves their answer open, queries sum this; other queries sum caps of the
-// border (build/open_surface.hpp), most of which are far away as seen from most places.
+// Builds compute this sum, and so do queries whose answer rounding would leave open; other queries sum caps
+// of the border (build/open_surface.hpp), most of which are far away from most points.
 
 namespace {
 
-/// A hair's breadth in the direction in which the perturbation (e, e^2, e^3) leads away from a ray first.
+/// A tiny step in the direction in which the perturbation (e, e^2, e^3) first leads away from a ray.
 Vec3d nudge_from_ray(const LatticePoint& d) {
     constexpr double kHair =
-        0x1p-22; // lattice steps: less than what parts lattice points from rays, more than rounding
-    // At the origin, the tip of all cone triangles, only the direction matters: it has to pass by their
-    // sides.
+        0x1p-22; // lattice steps: less than the distances between lattice points and rays, more than rounding
+    // At the origin, the tip of all cone triangles, only the direction matters: it must avoid their sides.
     if (d == LatticePoint{}) return {0x1p-10, 0x1p-31, 0x1p-52};
     const bool along_x = d.y == 0 && d.z == 0;
     return along_x ? Vec3d{0, kHair, 0} : Vec3d{kHair, 0, 0};
 }
 
-/// Solid angle of the cone triangle (origin, a, b) seen from share * d. On which side of it that lies, where
-/// the angle jumps by a full turn, is decided exactly, and so is whether it lies in the triangle's plane.
-/// There, and above all on its sides through the origin, where rays through border vertices run, the place is
-/// nudged, so that the two triangles on both sides of such a ray add up. Van Oosterom and Strackee 1983, as
-/// in mesh/judges.cpp.
+/// Solid angle of the cone triangle (origin, a, b) seen from share * d. The side of the triangle on which
+/// that point lies, where the angle jumps by 4 pi, is decided exactly, and so is whether it lies in the
+/// triangle's plane. In that plane, above all on the sides through the origin, along which rays run through
+/// border vertices, the point is nudged, so that the two triangles on both sides of such a ray add up. Van
+/// Oosterom and Strackee 1983, as in mesh/judges.cpp.
 double cone_solid_angle(const LatticePoint& a, const LatticePoint& b, const LatticePoint& d, double share) {
     const LatticePoint normal = cross(a, b);
     const std::int64_t volume = -dot(d, normal);
@@ -63,8 +62,8 @@ double cone_solid_angle(const LatticePoint& a, const LatticePoint& b, const Latt
     return positive ? angle : -angle;
 }
 
-/// The border's contribution to the generalised winding number, beside the signed crossings beyond the place
-/// share * d. A place on the cone counts as displaced by (e, e^2, e^3), as everywhere.
+/// What the border contributes to the generalised winding number in addition to the signed crossings beyond
+/// share * d. A point on the cone counts as displaced by (e, e^2, e^3), as everywhere.
 double border_part(std::span<const BorderEdge> border, std::span<const Vec3<std::int32_t>> vertices,
                    const LatticePoint& d, double share = 1) {
     double sum = 0;
@@ -76,19 +75,19 @@ double border_part(std::span<const BorderEdge> border, std::span<const Vec3<std:
 
 constexpr std::size_t kWidth = TreeNode::kWidth;
 
-/// A ray from a particle on, away from the origin.
+/// The ray from a particle away from the origin.
 class OutwardRay {
   public:
     explicit OutwardRay(const LatticePoint& p)
         : from_{static_cast<double>(p.x), static_cast<double>(p.y), static_cast<double>(p.z)} {
-        // At the origin the ray leads where the perturbation does: first along x.
+        // At the origin the ray runs in the direction of the perturbation: first along x.
         const std::array<double, 3> along{p == LatticePoint{} ? 1 : from_[0], from_[1], from_[2]};
-        constexpr double kAcross = 1e30; // the inverse of no movement at all along an axis
+        constexpr double kAcross = 1e30; // the inverse of a zero displacement along an axis
         for (std::size_t i = 0; i < 3; ++i) inverse_[i] = along[i] == 0 ? kAcross : 1 / along[i];
     }
 
-    /// Which of a node's boxes does it meet? One lattice step around them is more than all of this is
-    /// rounded, and than the ray is perturbed.
+    /// The boxes of a node that the ray meets, enlarged by one lattice step, which exceeds the rounding
+    /// errors and the perturbation of the ray.
     std::array<bool, kWidth> meets(const TreeNode& node) const {
         std::array<double, kWidth> begin{}, end;
         end.fill(1e30);
@@ -151,7 +150,7 @@ int cap_crossings(const ExactMapView& map, const LatticePoint& p) noexcept {
 
 namespace {
 
-/// The lists of a map with the width of their numbers known.
+/// The lists of a map, with the types that they are stored in.
 template <typename Face, typename Vertex>
 struct Lists {
     const ExactMapView& map;
@@ -163,7 +162,7 @@ struct Lists {
     }
 
     /// Signed crossings of a particle's ray with references [first, last), on one side of the particle.
-    /// @param part  of its cell in which the particle lies
+    /// @param part  the part of the cell in which the particle lies
     int crossings(RaySide side, std::uint32_t first, std::uint32_t last, std::uint32_t part,
                   const LatticePoint& p) const {
         const CrossingFilter filter(p);
@@ -172,7 +171,7 @@ struct Lists {
         int sum = 0;
         for (std::uint32_t begin = first; begin < last; begin += kPieceSize) {
             const std::uint32_t end = std::min(begin + kPieceSize, last);
-            std::uint32_t count = 0; // of the faces that touch the part; listed without a branch
+            std::uint32_t count = 0; // number of faces that touch the part; they are listed without a branch
             for (std::uint32_t r = begin; r < end; ++r) {
                 faces[count] = references[r];
                 count += std::uint32_t{map.reference_parts[r]} >> part & 1U;
@@ -187,7 +186,7 @@ struct Lists {
     }
 };
 
-/// Clang needs a deduction guide for an aggregate.
+/// Clang requires a deduction guide for an aggregate.
 template <typename Face, typename Vertex>
 Lists(const ExactMapView&, const Face*, const Vertex*) -> Lists<Face, Vertex>;
 
@@ -223,7 +222,7 @@ double generalised_winding(const ExactMapView& map, const LatticePoint& p, const
     return crossings_beyond(map, p) + border_part(map.border, map.vertices, p);
 }
 
-/// That of a place beyond the lattice, where it fades with the distance. @pre the place is finite
+/// The generalised winding number of a finite place beyond the lattice; it decreases with the distance.
 double winding_beyond_lattice(const ExactMapView& map, const Vec3d& place, const WindingGoal& goal) {
     if (const auto winding = decided_winding_by_tree(map, place, nullptr, 0, goal)) return *winding;
     const double largest = std::max({std::fabs(place.x), std::fabs(place.y), std::fabs(place.z)});
@@ -235,9 +234,9 @@ Winding winding_of(double generalised, WindingGoal::Turn turn) {
     return {nearest_whole(generalised), distance_from_turn(generalised, turn) >= kCertainMargin, true};
 }
 
-/// Where neighbours disagree about the outside, the winding number is that of a surface which nobody meant.
-/// But rays leave a solid as often as they enter it, whichever way its faces run: an answer is certain only
-/// if that does not contradict it.
+/// If neighbours disagree about the outside, the winding number is that of an unintended surface. But rays
+/// leave a solid as often as they enter it, whatever the orientation of its faces: an answer is certain only
+/// if the parity of the crossings agrees with it.
 Winding computed_winding_at(const ExactMapView& map, const LatticePoint& p, WindingGoal::Turn turn) {
     Winding winding = winding_of(generalised_winding(map, p, {turn}), turn);
     if (map.winding_tree->neighbours_disagree && winding.certain)

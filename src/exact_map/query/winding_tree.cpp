@@ -17,7 +17,7 @@
 #define HWY_TARGET_INCLUDE "exact_map/query/winding_tree.cpp"
 #include <hwy/foreach_target.h>
 
-// After foreach_target.h, which includes this file once for each instruction set.
+// Must follow foreach_target.h, which includes this file once per instruction set.
 #include "simd/dispatch.hpp"
 
 #include <hwy/highway.h>
@@ -27,14 +27,14 @@
 namespace echinus {
 namespace {
 
-/// A winding number that lies within an error of `value`, one that is small enough or not.
+/// A winding number, and whether its error is small enough for the goal.
 struct WindingSum {
     double value;
     bool decided;
 };
 
-/// How far a winding number is from the next turn of the answer, and from the next number that is
-/// kCertainMargin away from one: within that distance neither the answer nor its certainty changes.
+/// The distance of a winding number from the nearest value at which the answer changes or its certainty does,
+/// kCertainMargin away from the former.
 double distance_from_turning_point(double winding, WindingGoal::Turn turn) {
     const double from_turn = distance_from_turn(winding, turn);
     return std::min(from_turn, std::fabs(from_turn - kCertainMargin));
@@ -52,12 +52,12 @@ namespace {
 constexpr std::size_t kWidth = TreeNode::kWidth;
 using Row = std::array<double, kWidth>;
 
-/// An angle as a complex number, so that a sum of angles is a product.
+/// An angle represented as a complex number, so that angles are added by a product.
 struct Angle {
     double re = 1, im = 0;
-    double turns = 0; ///< to be added
+    double turns = 0; ///< full turns to be added
 
-    /// Adds the argument of a complex number. @pre it is not a negative real number
+    /// Adds the argument of a complex number that is not a negative real number.
     void add(double other_re, double other_im) {
         const double product_re = re * other_re - im * other_im;
         const double product_im = re * other_im + im * other_re;
@@ -67,7 +67,7 @@ struct Angle {
         im = product_im;
     }
 
-    /// Keeps the numbers in range.
+    /// Keeps the numbers in the range of double.
     void normalise() {
         const double scale = 1 / (std::fabs(re) + std::fabs(im));
         re *= scale;
@@ -77,7 +77,7 @@ struct Angle {
     double in_turns() const { return turns + argument() / (2 * std::numbers::pi); }
 
   private:
-    /// Our own atan2, since those of C libraries differ in the last bit. The angle is halved until a series
+    /// Our own atan2, since those of C libraries differ in the last bit. The angle is halved until the series
     /// is short: tan(x / 2) = y / (x + length).
     double argument() const {
         double x = std::fabs(re), y = std::fabs(im);
@@ -91,11 +91,11 @@ struct Angle {
     }
 };
 
-/// Sums one place's winding number: groups of faces as seen from afar, and then the parts of the groups whose
-/// bounds are the worst instead, until the error is small enough.
+/// Sums the winding number of one place: first groups of faces seen from afar, then, in place of the groups
+/// with the largest error bounds, the parts of these, until the error is small enough.
 class TreeSum {
   public:
-    /// @param kept_error  groups of smaller error are not parted
+    /// @param kept_error  groups with a smaller error are not divided
     TreeSum(const ExactMapView& map, const Vec3d& place, const LatticePoint* on_lattice, int crossings,
             double kept_error)
         : map_(map), tree_(*map.winding_tree), place_(place), on_lattice_(on_lattice), crossings_(crossings),
@@ -103,7 +103,8 @@ class TreeSum {
           kept_error_(kept_error) {}
 
     WindingSum operator()(const WindingGoal& goal) {
-        constexpr double kWorthALook = 0.5 - kCertainMargin; // far from all turns if they are one apart
+        constexpr double kWorthALook =
+            0.5 - kCertainMargin; // far from all turning points if these are one apart
         double needed = std::min(goal.tolerance, kWorthALook);
         add(0);
         while (true) {
@@ -117,15 +118,16 @@ class TreeSum {
     }
 
   private:
-    /// Caps close the surface: what they add to the whole, which the crossings count, is to be taken away.
+    /// Caps close the surface: their contribution to the whole, which the crossings count, must be
+    /// subtracted.
     double value() const { return crossings_ + sign_ * (far_value_ + angle_.in_turns()); }
-    /// With more than all sums are rounded.
+    /// Includes an allowance for the rounding of all sums.
     double error() const {
         constexpr double kRounding = 0x1p-36;
         return far_error_ + angle_error_ + magnitude_ * kRounding + 0x1p-40;
     }
 
-    /// Faces seen from afar. All groups together stay small enough for a small stack.
+    /// Faces seen from afar. Small, so that all groups together fit on a small stack.
     struct Group {
         double value;
         float error;         ///< rounded up
@@ -135,10 +137,10 @@ class TreeSum {
 
     static float rounded_up(double error) { return static_cast<float>(error * (1 + 0x1p-23)); }
 
-    /// Groups by their errors, up to 2^-n in bin n.
+    /// Groups by error: those with an error of up to 2^-n are in bin n.
     class Bins {
       public:
-        /// Returns false where the bin is full.
+        /// Returns false if the bin is full.
         bool add(const Group& group) {
             const int halvings = -std::ilogb(group.error) - 1;
             const auto bin = static_cast<std::size_t>(std::clamp(halvings, 0, static_cast<int>(kCount) - 1));
@@ -161,7 +163,7 @@ class TreeSum {
         std::array<std::array<Group, kCapacity>, kCount> groups_;
     };
 
-    /// Returns false where no group may be parted.
+    /// Divides the group with the largest error. Returns false if no group may be divided.
     bool part_the_worst() {
         const std::optional<Group> worst = bins_.take_worst();
         if (!worst) return false;
@@ -171,8 +173,8 @@ class TreeSum {
         return true;
     }
 
-    /// Adds a child of a node, whose own children are seen from afar or, where they are too near for that,
-    /// added in the same way.
+    /// Adds a child of a node. Its own children are seen from afar or, if they are too near for that, added
+    /// in the same way.
     void add(std::uint32_t child) {
         constexpr std::size_t kMaxDepth = 12; // as in walk_near_leaves()
         std::array<std::uint32_t, kMaxDepth * kWidth> waiting;
@@ -196,7 +198,8 @@ class TreeSum {
         }
     }
 
-    /// Adds a group unless it should be parted, because there is no room to remember it.
+    /// Adds a group, unless its error is so large that it must be remembered for division and there is no
+    /// room left.
     bool keep(const Group& group) {
         const auto error = static_cast<double>(group.error);
         if (error > kept_error_ && !bins_.add(group)) return false;
@@ -205,15 +208,15 @@ class TreeSum {
         return true;
     }
 
-    /// The children of a node as seen from a place.
+    /// The children of a node, seen from a place.
     struct FarChildren {
         Row values, areas;
-        Row errors; ///< infinite where a child is too near
+        Row errors; ///< infinite if a child is too near
     };
 
-    /// Loops over arrays of their own, for the compiler to vectorise.
+    /// Loops over separate arrays, so that the compiler can vectorise.
     static FarChildren seen_from(const Vec3d& place, const WindingNode& node) {
-        constexpr double kTooNear = 0.9; // of a radius to the distance
+        constexpr double kTooNear = 0.9; // ratio of radius to distance
         FarChildren result;
         for (std::size_t k = 0; k < kWidth; ++k) {
             const double x = node.centre[0][k] - place.x, y = node.centre[1][k] - place.y,
@@ -244,12 +247,12 @@ class TreeSum {
     };
 
     /// The faces of a leaf as complex numbers whose arguments are half their solid angles: van Oosterom and
-    /// Strackee 1983. Divided by the product of the distances, so that their lengths are at most 4, they are
-    /// off by less than 2^-46 for a place of the lattice: coordinates are then whole numbers, and only
+    /// Strackee 1983. They are divided by the product of the distances, so that their absolute values are at
+    /// most 4. For a lattice point they are off by less than 2^-46: coordinates are then integers, and only
     /// products and roots are rounded.
     struct Leaf {
         Row re, im;
-        Row doubts; ///< how far the arguments may be off
+        Row doubts; ///< bounds of the arguments' errors
     };
 
     Leaf angles_of(std::uint32_t first, std::uint32_t count, const Vec3d& nudge) const {
@@ -294,20 +297,20 @@ class TreeSum {
             add_leaf_from_beside(first, count);
     }
 
-    /// A place on an edge stands for itself moved by (e, e^2, e^3). Here e is a hair's breadth: less than
-    /// what parts lattice points from edges, more than rounding.
+    /// A place on an edge counts as displaced by (e, e^2, e^3). Here e is tiny: less than the distance of
+    /// lattice points from edges, and more than rounding.
     void add_leaf_from_beside(std::uint32_t first, std::uint32_t count) {
         constexpr double kHair = 0x1p-22;
         const Leaf leaf = angles_of(first, count, {kHair, kHair * 0x1p-9, 0});
         if (is_certain(leaf))
             add_angles(leaf, first, count);
         else
-            angle_error_ += 1; // nothing is known
+            angle_error_ += 1; // nothing is known about the sum
     }
 
-    /// Of a leaf's numbers. Coordinates from a place that is not of the lattice are rounded by a share of its
-    /// own, which matters where it is near to the surface. It lies beyond the lattice, hence beyond the
-    /// sphere that holds the surface.
+    /// The rounding error of a leaf's complex numbers. Relative to a place that is no lattice point,
+    /// coordinates are rounded in proportion to its own, which matters if it is near the surface. Such a
+    /// place lies beyond the lattice, hence beyond the sphere that contains the surface.
     static double rounding_at(const Vec3d& place, bool on_lattice) {
         constexpr double kOnLattice = 0x1p-46;
         if (on_lattice) return kOnLattice;
@@ -316,7 +319,7 @@ class TreeSum {
         return kOnLattice * (1 + distance / std::max(clearance, 0.25));
     }
 
-    /// Are the arguments of all numbers known? Not where the place is on an edge.
+    /// Are the arguments of all numbers known? They are not if the place is on an edge.
     static bool is_certain(const Leaf& leaf) {
         constexpr double kMostDoubt = 1.0 / 64;
         bool certain = true;
@@ -328,15 +331,16 @@ class TreeSum {
         for (std::uint32_t k = 0; k < count; ++k) {
             angle_error_ += leaf.doubts[k];
             if (leaf.re[k] < 0 && std::fabs(leaf.im[k]) <= rounding_) [[unlikely]]
-                angle_.turns += half_turn(first + k); // on the face: half the sphere
+                angle_.turns += half_turn(first + k); // on the face, which covers half of all directions
             else
                 angle_.add(leaf.re[k], leaf.im[k]);
         }
         angle_.normalise();
     }
 
-    /// Of a face on which the place is: positive where that is behind it, on the side of its solid. Decided
-    /// exactly; in its plane, by the perturbation. A face without area is seen at no angle from anywhere.
+    /// The half turn of a face on which the place lies: positive if the place counts as behind the face, on
+    /// the side of its solid. This is decided exactly and, in the face's plane, by the perturbation. A face
+    /// without area has no solid angle.
     double half_turn(std::uint32_t face) const {
         const auto corner = [&](std::size_t k) {
             return LatticePoint(map_.vertices[tree_.corners[3 * std::size_t{face} + k]]);
@@ -354,16 +358,16 @@ class TreeSum {
     Vec3d place_;
     const LatticePoint* on_lattice_;
     double crossings_;
-    double sign_; ///< of the sum in the winding number
+    double sign_; ///< the sign of the sum in the winding number
 
-    static constexpr double kTooFarOff = 0.5; // an error that is not worth remembering
+    static constexpr double kTooFarOff = 0.5; // a larger error is not worth remembering
 
     double rounding_;
     double kept_error_;
     double far_value_ = 0, far_error_ = 0;
-    double magnitude_ = 0; ///< of all terms of the two together, at least
+    double magnitude_ = 0; ///< an upper bound of the sum of all terms' absolute values
     Bins bins_;
-    Angle angle_; ///< of the faces nearby
+    Angle angle_; ///< the sum of the solid angles of the faces nearby
     double angle_error_ = 0;
 };
 
@@ -389,7 +393,7 @@ HWY_EXPORT(sum_by_tree);
 std::optional<double> decided_winding_by_tree(const ExactMapView& map, const Vec3d& place,
                                               const LatticePoint* on_lattice, int crossings,
                                               const WindingGoal& goal) noexcept {
-    constexpr double kFinest = 1e-8; // what the rounding of double permits
+    constexpr double kFinest = 1e-8; // the accuracy that rounding in double permits
     constexpr double kLeastKept = 0x1p-36;
     const WindingGoal wanted{goal.turn, std::max(goal.tolerance, kFinest)};
     for (double kept = std::min(0x1p-8, wanted.tolerance * 0x1p-5);;
