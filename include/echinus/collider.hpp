@@ -28,9 +28,9 @@ namespace echinus {
 struct ColliderMap {
     using Kind = std::variant<DistanceMap, ExactMap, std::shared_ptr<const CustomMap>>;
     Kind kind;
-    /// For a map that is not exact, the exact map of the same mesh, whose faces
-    /// CollisionMode::Surfaces needs: `kind` pushes particles out, and surfaces are kept off
-    /// these faces. Queries ignore it.
+    /// If `kind` is not an exact map: the exact map of the same mesh, whose faces CollisionMode::Surfaces
+    /// needs. Particles are then pushed out by `kind`, and surfaces are kept off these faces. Queries ignore
+    /// it.
     std::optional<ExactMap> surface{};
 
     template <std::convertible_to<Kind> Map>
@@ -47,11 +47,11 @@ struct Collider {
     ColliderMap map;       ///< not a null pointer
     RigidTransform pose{}; ///< its rotation has unit length
     /// Scale factors along the map's axes. Three equal factors change the size, different factors stretch the
-    /// model, and a negative one mirrors it. The inside stays inside, and normals point out of the solid. All
-    /// factors must be finite and not 0.
+    /// model, and negative factors mirror it. The inside stays inside, and normals point out of the solid in
+    /// any case. All factors must be finite and not 0.
     Vec3d scale{1, 1, 1};
-    Vec3d linear_velocity{};  ///< of the pose's translation, units per second
-    Vec3d angular_velocity{}; ///< about the pose's translation, in world axes, radians per second
+    Vec3d linear_velocity{};  ///< velocity of the pose's translation, units per second
+    Vec3d angular_velocity{}; ///< rotation about the pose's translation, in world axes, radians per second
     std::string name{};       ///< for error messages; if empty, "collider" and its index
 
     bool moves() const { return linear_velocity != Vec3d{} || angular_velocity != Vec3d{}; }
@@ -83,9 +83,9 @@ RigidTransform pose_at(std::span<const PoseKey> keys, double seconds);
 
 /// The vertices of a model over time, in equally spaced samples, as in a PC2 file (mesh_io.hpp).
 struct VertexCache {
-    double start_time = 0;                             ///< of the first sample, seconds
-    double sample_seconds = 1;                         ///< from one sample to the next; positive
-    std::size_t vertex_count = 0;                      ///< of the model
+    double start_time = 0;                             ///< the time of the first sample, seconds
+    double sample_seconds = 1;                         ///< the time between samples; positive
+    std::size_t vertex_count = 0;                      ///< the number of the model's vertices
     std::shared_ptr<const std::vector<Vec3f>> samples; ///< vertex_count positions each, local; at least one
     std::string name{}; ///< for error messages, for instance the file's name; may be empty
 
@@ -103,24 +103,25 @@ std::vector<Vec3f> vertices_at(const VertexCache& cache, double seconds);
 // resolve it. A point that overflows float in the local frame is outside. A point with NaN or infinity is
 // outside and has no contact and no crossing. The cost is that of the map's query, plus that of converting
 // the pose to a matrix, once per batch.
-// @pre the pose is finite and its rotation has unit length, the scale is finite and has no 0, and a custom
-// map is not null. This is not checked: with another rotation the answers are meaningless.
+// @pre the pose is finite and its rotation has unit length, the factors of the scale are finite and not 0,
+// and a custom map is not null. This is not checked: with a rotation that is not of unit length the answers
+// are meaningless.
 
 bool contains(const Collider& collider, Vec3f point_world) noexcept;
 
 /// Finds the contact of a particle. If there is none, `point` equals the particle bit for bit.
 ///
-/// With an exact map, the contact is the nearest point of the scaled surface in the world, its distance and
-/// the normal of the scaled surface. With a distance map, it is the point on the ray from the centre; depth
-/// and margin are world lengths along that ray, and the normal is transformed by the inverse transpose of the
-/// scale. Three equal factors cost nothing extra with either map. A custom map is queried with the margin
-/// divided by the smallest factor, and its point and normal are scaled like those of a distance map; contacts
-/// beyond the margin are passed on.
+/// With an exact map, the contact is the nearest point of the scaled surface in the world, with its distance
+/// and the normal there. With a distance map, it is the point on the ray from the centre; depth and margin
+/// are world lengths along that ray, and the normal is transformed by the inverse transpose of the scale.
+/// Three equal factors cost nothing extra with either map. A custom map is queried with the margin divided by
+/// the smallest factor, and its point and normal are scaled like those of a distance map; contacts beyond the
+/// margin are passed on.
 Contact contact(const Collider& collider, Vec3f point_world, float margin_world = 0) noexcept;
 
 /// @param points_world  [n]
 /// @param inside        [n] out: 1 inside, 0 outside. Must not overlap points_world.
-/// @param thread_count  0: all cores. Used for 32 768 points or more; all of them query a custom map
+/// @param thread_count  0: all cores. Used for 32 768 points or more, also to query a custom map
 /// @pre points_world.size() == inside.size()
 void contains_batch(const Collider& collider, StridedSpan<const Vec3f> points_world,
                     std::span<std::uint8_t> inside, unsigned thread_count = 1) noexcept;
@@ -132,9 +133,9 @@ void contains_batch(const Collider& collider, StridedSpan<const Vec3f> points_wo
 void contacts_batch(const Collider& collider, StridedSpan<const Vec3f> points_world, float margin_world,
                     std::span<Contact> contacts, unsigned thread_count = 1) noexcept;
 
-/// The output of contacts_into(): the existing contacts, one after the other, with a separate array for each
-/// member. An empty array is not written, and one that is too short receives the first contacts. The members
-/// are those of Contact.
+/// The output of contacts_into(): the contacts that exist, one after the other, with a separate array for
+/// each member. An empty array is not written, and one that is too short receives the first contacts. The
+/// members are those of Contact.
 /// @tparam T  float or double, the type of the points' coordinates
 template <typename T>
 struct ContactArrays {
@@ -149,8 +150,8 @@ struct ContactArrays {
 
 /// Finds the contacts that contacts_batch() finds for one collider after the other, bit for bit, without the
 /// points that have none. It suits solvers that keep separate arrays, have many points and few contacts, or
-/// many colliders. Contacts ascend by collider, then by point. Colliders whose bounding sphere is away from
-/// all points cost next to nothing.
+/// many colliders. Contacts ascend by collider, then by point. A collider whose bounding sphere is away from
+/// all points costs next to nothing.
 ///
 /// With points in double, the world may be arbitrarily large: points are rounded to float only in the
 /// collider's local frame, and `points` of the contacts are the map's answers transformed to the world in
@@ -160,8 +161,8 @@ struct ContactArrays {
 /// overlap points_world or each other
 /// @returns the number of contacts, including those for which an array was too short
 ///
-/// Allocates nothing beyond the allocations of the maps' batches, except that each thread keeps 200 KB of
-/// memory from its first call with a custom map on.
+/// The function allocates only what the batches of the maps allocate and, from a thread's first call with a
+/// custom map on, 200 KB that the thread keeps.
 std::size_t contacts_into(std::span<const Collider> colliders, StridedSpan<const Vec3f> points_world,
                           float margin_world, const ContactArrays<float>& contacts) noexcept;
 std::size_t contacts_into(std::span<const Collider> colliders, StridedSpan<const Vec3d> points_world,
@@ -170,11 +171,11 @@ std::size_t contacts_into(std::span<const Collider> colliders, StridedSpan<const
 /// Finds where a moving particle first meets a collider that moves and rotates at the same time: the first
 /// crossing of the chord between the particle's local positions in the previous and the present pose. If the
 /// collider rotates by the angle a, the chord and the true path differ by at most a^2 / 8 of the distance
-/// from the axis. The scale is the same at both ends.
+/// from the axis. The scale does not change during the motion.
 ///
 /// `point` and `normal` are in the world, with the collider in its present pose: `point` is the present
 /// position of the surface point that was met, or `to_world` without a crossing. `entering` is that of the
-/// map's sweep. Distance maps and custom maps have no sweep, so no crossing is found.
+/// map's sweep. Distance maps and custom maps cannot be swept, so no crossing with them is found.
 SweepHit sweep(const Collider& collider, const RigidTransform& previous_pose, Vec3f from_world,
                Vec3f to_world) noexcept;
 
@@ -182,7 +183,7 @@ SweepHit sweep(const Collider& collider, const RigidTransform& previous_pose, Ve
 /// @param from_world, to_world  [n]
 /// @param hits                  [n] out. Must not overlap the points
 /// @param thread_count          0: all cores. Used for 32 768 particles or more
-/// @pre all three have the same size
+/// @pre all three arrays have the same size
 void sweep_batch(const Collider& collider, const RigidTransform& previous_pose,
                  StridedSpan<const Vec3f> from_world, StridedSpan<const Vec3f> to_world,
                  std::span<SweepHit> hits, unsigned thread_count = 1) noexcept;

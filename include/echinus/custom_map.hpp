@@ -14,14 +14,15 @@ namespace echinus {
 /// A user-defined structure that a collider queries in place of a map: a distance field, an analytic shape,
 /// another library. Derive from it and pass a shared pointer to a collider (collider.hpp).
 ///
-/// A simulation pushes particles to the contacts' points. It guarantees less than with an exact map:
-/// particles are not swept, so one may pass through a part that is thinner than its path in one frame.
+/// A simulation pushes particles to the points of the contacts. It guarantees less than with an exact map:
+/// particles are not swept, so a particle may pass through a part that is thinner than the particle's path in
+/// one frame.
 class CustomMap {
   public:
     virtual ~CustomMap() = default;
 
     // All points are in the map's own frame and unit. A call has at most a few thousand of them. Some may be
-    // NaN or infinite; their answers are ignored. Any number of threads may call at once.
+    // NaN or infinite; their answers are ignored. Any number of threads may call these functions at once.
 
     /// @param points_local  [n]
     /// @param inside        [n] out: 1 inside, 0 outside

@@ -14,16 +14,17 @@ enum class DirectionGrid : std::uint8_t {
     /// bilinearly. Flat faces become slightly curved, and samples crowd at the poles.
     Spherical,
     /// The faces of an octahedron, divided into small triangles. This grid needs no trigonometry, and the
-    /// solid angles of its samples differ by 5.2 : 1, compared with 127 : 1 for the spherical grid. It
-    /// interpolates the reciprocal of the L1 radius |x| + |y| + |z|, which is affine over a flat face, so
+    /// solid angles of its samples differ by a factor of up to 5.2, compared with 127 for the spherical grid.
+    /// It interpolates the reciprocal of the L1 radius |x| + |y| + |z|, which is affine over a flat face, so
     /// that flat faces stay flat.
     Octahedral,
     /// The faces of a cube, evenly spaced in angle (a tangent-warped, or equiangular, cube map): the most
-    /// uniform grid, with solid angles that differ by 1.4 : 1. The distance is interpolated bilinearly.
+    /// uniform grid, with solid angles that differ by a factor of up to 1.4. The distance is interpolated
+    /// bilinearly.
     Cube,
     /// The spherical grid, in a frame whose axes are scaled so that the mesh's box about the centre is a
     /// cube. The samples are then spread evenly over an ellipsoid with the proportions of the mesh. The
-    /// distance in the scaled frame is interpolated, which is constant over that ellipsoid.
+    /// interpolated quantity is the distance in the scaled frame, which is constant over that ellipsoid.
     Ellipsoidal,
 };
 

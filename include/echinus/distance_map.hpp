@@ -27,8 +27,8 @@ namespace echinus {
 enum class VertexCorrection : std::uint8_t {
     None,  ///< entries are the exact crossings
     Paper, ///< the four samples around a vertex are increased by the missing distance, in every layer
-    /// Layers where the ray leaves the solid are increased, and layers where it enters are decreased, so that
-    /// both errors enlarge the solid.
+    /// Entries of layers in which the ray leaves the solid are increased, and those of layers in which it
+    /// enters are decreased, so that both errors enlarge the solid.
     Signed,
 };
 
@@ -36,7 +36,7 @@ enum class VertexCorrection : std::uint8_t {
 enum class EntryFormat : std::uint8_t {
     Float32,
     Unorm16, ///< half the bytes: steps of 1/65535 of the largest entry; the error is at most R / 131070
-             ///< = 7.6e-6 R, on octahedral and ellipsoidal grids sqrt(3) times as much
+             ///< = 7.6e-6 R, and sqrt(3) times as much on octahedral and ellipsoidal grids
 };
 
 struct DistanceMapOptions {
@@ -46,23 +46,24 @@ struct DistanceMapOptions {
     static constexpr std::uint32_t kMaxDivisions = 4096;
 
     DirectionGrid grid = DirectionGrid::Spherical; ///< decides which of the numbers below are used
-    /// Spherical and ellipsoidal: number of samples of phi; memory and build time grow with the product of
-    /// the two.
+    /// Spherical and ellipsoidal: number of samples of the longitude phi; memory and build time grow with the
+    /// product of this and colatitude_count.
     std::uint32_t longitude_count = 200;
-    /// Spherical and ellipsoidal: number of samples of theta; doubling both divides the share of wrong signs
-    /// by 2.5.
+    /// Spherical and ellipsoidal: number of samples of the colatitude theta; doubling both numbers divides
+    /// the share of wrong signs by 2.5.
     std::uint32_t colatitude_count = 200;
     /// Octahedral and cube: the number of parts into which each edge is divided. The octahedron has (2
-    /// divisions + 1)^2 samples, and the cube 6 (divisions + 1)^2; 100 divisions of the octahedron, or 81 of
-    /// the cube, take as many bytes as 200 x 200 directions.
+    /// divisions + 1)^2 samples, and the cube 6 (divisions + 1)^2; the octahedron with 100 divisions and the
+    /// cube with 81 take as many bytes as 200 x 200 directions.
     std::uint32_t divisions = 100;
     VertexCorrection correction =
         VertexCorrection::Signed;                    ///< None is unbiased; Signed misses fewer particles
-    EntryFormat entry_format = EntryFormat::Float32; ///< Unorm16 halves the entries
+    EntryFormat entry_format = EntryFormat::Float32; ///< Unorm16 halves the size of the entries
     /// Spherical and ellipsoidal: samples crowd at the poles, so put the poles where the detail is.
     PoleAxis pole_axis = PoleAxis::Z;
-    CentreChoice centre = CentreChoice::BoundingSphere; ///< the paper's; Search takes five times as long
-    unsigned thread_count = 0; ///< 0: all cores. The bytes of the map do not depend on it.
+    CentreChoice centre =
+        CentreChoice::BoundingSphere; ///< the paper's; with Search a build takes five times as long
+    unsigned thread_count = 0;        ///< 0: all cores. The bytes of the map do not depend on it.
 };
 
 /// Statistics of the build, stored with the map.
@@ -73,8 +74,8 @@ struct DistanceMapStatistics {
     std::uint32_t max_entries = 0;       ///< largest number of entries of one direction
     std::uint32_t corrected_entries = 0; ///< entries moved by the vertex correction
     std::uint32_t clamped_entries = 0;   ///< corrections cut short at 0, R or a neighbouring entry
-    /// Share of directions whose number of entries has the wrong parity for the centre, because of holes seen
-    /// from there. It is 0 for a closed mesh.
+    /// Share of directions whose number of entries has the wrong parity for the centre, because of holes that
+    /// can be seen from there. It is 0 for a closed mesh.
     float wrong_parity_share = 0;
 };
 
@@ -110,7 +111,7 @@ struct DistanceMapView {
 
     std::size_t direction_count() const;
     /// R; octahedral: a little more than sqrt(3) R, the largest L1 radius in the bounding sphere;
-    /// ellipsoidal: R, or a little more than sqrt(3) times the smallest scale times R where that is less.
+    /// ellipsoidal: R, or a little more than sqrt(3) times the smallest scale times R if that is less.
     float largest_entry() const;
     std::size_t entry_count() const { return entry_offsets.empty() ? 0 : entry_offsets.back(); }
     /// The size of all arrays that a query reads.
@@ -127,13 +128,13 @@ class DistanceMap {
     /// The time is O(faces + crossings + directions).
     /// @param mesh  closed; behind a hole answers are wrong, and wrong_parity_share is the share of
     /// directions that see one. VertexCorrection::Signed also requires faces that are counter-clockwise
-    /// seen from outside. A solid that is so flat or thin that no ray meets it gives a map without
-    /// entries, for which everything is outside
+    /// seen from outside. A solid so flat or thin that no ray meets it gives a map without entries, for which
+    /// every point is outside
     /// @throws Error InvalidMesh as inspect() does, or when the bounding radius lies outside [1e-15, 1e15];
     /// InvalidOptions when a count that the grid uses lies outside the bounds above
     static DistanceMap build(const TriangleMesh& mesh, const DistanceMapOptions& options = {});
 
-    /// Makes a map of existing arrays. They belong to `storage`, which the map keeps alive. The file reader
+    /// Makes a map from existing arrays. They belong to `storage`, which the map keeps alive. The file reader
     /// uses this constructor.
     /// @pre the invariants of DistanceMapView hold
     DistanceMap(const DistanceMapView& view, const DistanceMapStatistics& statistics,
@@ -169,15 +170,15 @@ class DistanceMap {
 /// hole of an open mesh, the whole ray up to R has the same answer as the centre.
 bool contains(const DistanceMapView& map, Vec3f point_local) noexcept;
 
-/// Finds whether the particle is inside, how deep along its ray, and where the push-out leads: to the
-/// interpolated entry nearest to |d| on the particle's own ray. The depth is radial, so it is at least the
-/// true depth to the map's surface and often greater. The normal is that of the map's surface there, so that
-/// (point, normal) is the contact plane; it is not parallel to the push-out.
+/// Finds whether the particle is inside, how deep it is along its ray, and where the push-out leads: to the
+/// interpolated entry nearest to the particle on its own ray. The depth is radial, so it is at least the true
+/// depth below the map's surface and often greater. The normal is that of the map's surface at `point`, so
+/// that (point, normal) is the contact plane; it is not parallel to the push-out in general.
 ///
 /// @param margin  particles outside that are at most this far from the nearest entry along their ray also get
 /// a contact, with negative depth. Not negative; NaN counts as 0.
 ///
-/// If the solid has no far end along a ray, as in a hole of an open mesh, the bounding sphere is its end.
+/// If the ray does not leave the solid, as in a hole of an open mesh, the solid ends at the bounding sphere.
 Contact contact(const DistanceMapView& map, Vec3f point_local, float margin = 0) noexcept;
 
 /// contains() for many points, with the same answers. It uses vector instructions (instruction_set.hpp) and
@@ -189,7 +190,7 @@ Contact contact(const DistanceMapView& map, Vec3f point_local, float margin = 0)
 void contains_batch(const DistanceMapView& map, StridedSpan<const Vec3f> points_local,
                     std::span<std::uint8_t> inside, unsigned thread_count = 1) noexcept;
 
-/// contact() for many points, also with vector instructions.
+/// contact() for many points, with the same answers; it uses vector instructions, too.
 /// @param points_local  [n]
 /// @param contacts      [n] out. Must not overlap points_local.
 /// @pre points_local.size() == contacts.size()
@@ -200,9 +201,9 @@ void contacts_batch(const DistanceMapView& map, StridedSpan<const Vec3f> points_
 /// The numbers of directions with 0, 1, 2 ... entries.
 std::vector<std::size_t> entry_histogram(const DistanceMapView& map);
 
-/// The number of samples around a point that entered the interpolation, of four, or of three on an octahedron
-/// (paper section 2.2: "rarely ... less than 3"). It is 1 to 4, or 0 for points outside the sphere or not
-/// finite, for which no query interpolates.
+/// The number of samples around a point that are used in the interpolation, out of four, or out of three on
+/// an octahedron (paper section 2.2: "rarely ... less than 3"). It is 1 to 4, or 0 for a point that is
+/// outside the sphere or not finite, for which no query interpolates.
 int usable_sample_count(const DistanceMapView& map, Vec3f point_local) noexcept;
 
 /// The surface of the map (figures 2 and 3): where four neighbouring directions have the same number of

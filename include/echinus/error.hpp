@@ -14,7 +14,7 @@ enum class ErrorCode {
     Unreadable,         ///< a file does not exist, is a directory, or cannot be read
     Unwritable,         ///< a file cannot be written: permission, missing folder, full disk
     WrongFormat,        ///< the bytes do not have the format that the name or the reader expects
-    Damaged,            ///< the right format, but truncated or self-contradictory
+    Damaged,            ///< the file has the right format, but is truncated or contradicts itself
     UnsupportedVersion, ///< a map file of a version that this library does not read
     InvalidMesh,        ///< no faces, a coordinate that is not finite, an index out of range
     InvalidOptions,     ///< an option outside the range that its declaration states
@@ -38,8 +38,9 @@ class Error : public std::runtime_error {
 };
 
 /// Called with a sentence when a call violates a precondition (`@pre`) whose check costs next to nothing: the
-/// sizes of batches, and indices of colliders and particles. If it returns, the call returns, too, without
-/// any effect. The default throws std::logic_error. Functions that are noexcept then end the program.
+/// sizes of batches, and indices of colliders and particles. If the handler returns, the call returns, too,
+/// without any effect. The default handler throws std::logic_error, which ends the program if the called
+/// function is noexcept.
 using PreconditionHandler = void (*)(const char* sentence);
 
 /// Sets the handler for the whole program, for example one that logs or breaks into a debugger. Any thread

@@ -17,11 +17,11 @@ ECHINUS_EXPORT_BEGIN
 
 /// The exact map. Directions around the centre are divided into cells. Each cell stores its *bands*: the
 /// radial intervals that contain surface, rounded outwards, with the faces that pass through them. Between
-/// bands there is no surface, so a comparison gives the answer; within a band the band's faces are tested
+/// bands there is no surface, so a comparison of radii gives the answer; within a band its faces are tested
 /// with exact arithmetic. The number of cells trades memory for speed and does not change any answer.
 ///
 /// "Exact" refers to the map's integer lattice, whose step is 1.9e-6 of the bounding radius: mesh and
-/// particle are snapped to it, and from there on all signs are exact (docs/accuracy.md). Inside and
+/// particle are snapped to it, and all signs computed afterwards are exact (docs/accuracy.md). Inside and
 /// outside are exact; depths, normals and points are those of the snapped mesh, rounded to float.
 ///
 /// All points are in the frame and unit of the mesh from which the map was built ("local").
@@ -37,16 +37,17 @@ struct ExactMapOptions {
     /// faces that lie close together, such as the teeth of a comb, reach the limit. ExactMapStatistics
     /// estimates the cost of queries.
     std::uint32_t divisions = 0;
-    /// With divisions = 0: the map gets as many cells as keep ExactMapView::byte_count() within this budget,
-    /// up to 16 times the default number; for an open surface, up to the default. The build takes three or
-    /// four times as long as one with the divisions that it finds. 0 means no budget.
+    /// With divisions = 0: the map gets as many cells as fit when ExactMapView::byte_count() is limited to
+    /// this budget, but at most 16 times the default number, or the default number for an open surface. The
+    /// build takes three or four times as long as one with the resulting number of divisions. 0 means no
+    /// budget.
     std::size_t byte_budget = 0;
     InsideRule rule = InsideRule::Nonzero;
     CentreChoice centre = CentreChoice::BoundingSphere;
     /// For an open surface: search for gaps between bands in which the winding number stays certain, so that
-    /// queries there need not compute it. The search takes up to about 0.2 s of one core. Without it, the
-    /// answers are the same but take up to eight times as long, which suits maps that are used for one frame.
-    /// It has no effect on a closed mesh.
+    /// queries there need not compute it. The search takes up to about 0.2 s of one core. Without the search,
+    /// answers are the same but take up to eight times as long, which is acceptable for a map that is used
+    /// for one frame only. It has no effect on a closed mesh.
     bool find_certain_gaps = true;
     unsigned thread_count = 0; ///< 0: all cores. The bytes of the map do not depend on it.
 };
@@ -65,9 +66,9 @@ struct ExactMapStatistics {
     /// the surface tests (the mean over bands, weighted by their numbers of faces). It is about 10 for most
     /// meshes with default options, and hundreds or thousands where the size of the map is limited.
     float expected_tests = 0;
-    /// Share of the bounding sphere's volume where the map stores the answer, which is certain. Elsewhere the
-    /// winding number is computed for each point, and may be certain as well (Containment). It is 1 for a
-    /// closed mesh.
+    /// Share of the bounding sphere's volume in which the map stores the answer, which is certain. Elsewhere
+    /// the winding number is computed for each point; the answer may be certain there as well (Containment).
+    /// It is 1 for a closed mesh.
     float certain_share = 1;
     /// Share of directions, by solid angle, along which the winding number must be computed somewhere.
     float uncertain_directions = 0;
@@ -87,7 +88,7 @@ class ExactMap {
     /// the coarsest map exceeds
     static ExactMap build(const TriangleMesh& mesh, const ExactMapOptions& options = {});
 
-    /// Makes a map of existing arrays. They belong to `storage`, which the map keeps alive. The file reader
+    /// Makes a map from existing arrays. They belong to `storage`, which the map keeps alive. The file reader
     /// uses this constructor. Only ExactMapView::winding_tree is computed.
     /// @pre the invariants of ExactMapView hold
     ExactMap(const ExactMapView& view, const ExactMapStatistics& statistics, std::uint64_t source_hash,
@@ -115,10 +116,11 @@ class ExactMap {
 // ---- Queries. They are noexcept and may run on any number of threads. Queries of one particle do not
 // allocate.
 //
-// A point with NaN or infinity is outside and has no contact; with NaN this is not certain. On the lattice no
-// particle lies on the surface: it is treated as if it were moved by (e, e^2, e^3), with e infinitely small
-// (docs/accuracy.md). So a particle on a face is inside or outside depending on the face's orientation, and
-// neighbouring closed parts that share a face leave no gap and no overlap between them.
+// A point with NaN or infinity is outside and has no contact; for a point with NaN this is not certain. On
+// the lattice no particle lies on the surface: it is treated as if it were moved by (e, e^2, e^3), with e
+// infinitely small (docs/accuracy.md). So a particle on a face is inside or outside depending on the face's
+// orientation, and neighbouring closed parts that share a face have neither a gap nor an overlap between
+// them.
 
 /// An answer about an open surface is *certain* if the generalised winding number differs by at least this
 /// margin from every threshold between inside and outside: from one half and minus one half or, with
@@ -130,9 +132,9 @@ inline constexpr double kCertainMargin = 0.1;
 struct Containment {
     bool inside = false;
     bool certain = true; ///< see kCertainMargin
-    /// The winding number was computed for this point. It is false where the map stores the answer:
-    /// everywhere for a closed surface, and for an open one in the gaps in which the winding number was shown
-    /// to stay certain.
+    /// Whether the winding number was computed for this point. It is not computed where the map stores the
+    /// answer: everywhere for a closed surface, and for an open one in the gaps in which the answer was
+    /// proven to be certain.
     bool computed = false;
 };
 
@@ -158,10 +160,10 @@ void classify_batch(const ExactMapView& map, StridedSpan<const Vec3f> points_loc
 /// The result is NaN for a point with NaN, and otherwise 0 for a point with infinity. The query does not
 /// allocate. For an open surface it traverses a tree (Barill et al. 2018) of caps that close the holes, or of
 /// the faces of a soup, with an error bound for each distant group. This takes 1 microsecond with caps and 10
-/// to 60 for soups, and more for a smaller tolerance; contains() takes a third of a microsecond with caps and
-/// 1 to 10 for soups.
-/// @param tolerance  the largest error of the result, which is never on the wrong side of an odd multiple of
-/// one half. Not negative; NaN counts as 0, and 0 as 1e-8, the accuracy of these sums in double
+/// to 60 microseconds for soups, and longer for a smaller tolerance; contains() takes a third of a
+/// microsecond with caps and 1 to 10 microseconds for soups.
+/// @param tolerance  the largest error of the result; the result is never on the wrong side of an odd
+/// multiple of one half. Not negative; NaN counts as 0, and 0 as 1e-8, the accuracy of these sums in double
 float winding_number(const ExactMapView& map, Vec3f point_local, float tolerance = 1e-2F) noexcept;
 
 /// winding_number() for many points.
@@ -177,23 +179,23 @@ void winding_number_batch(const ExactMapView& map, StridedSpan<const Vec3f> poin
 /// minimum, by a branch-and-bound search. Where parts overlap or are nested, the nearest point may lie inside
 /// the solid, since faces that do not bound the solid count as surface, too.
 ///
-/// The normal is the direction from the surface point to a particle outside, or from a particle inside to the
-/// surface point. For a particle within two lattice steps of the surface, where snapping would make this
-/// direction arbitrary, it is the angle-weighted pseudonormal of the faces that meet there (Baerentzen and
-/// Aanaes 2005).
+/// The normal points from the surface point to a particle that is outside, and from a particle that is inside
+/// to the surface point. For a particle within two lattice steps of the surface, where snapping would make
+/// this direction arbitrary, it is the angle-weighted pseudonormal of the faces that meet there (Baerentzen
+/// and Aanaes 2005).
 ///
 /// The cost is that of contains() plus, for particles inside or with a margin, that of the search with vector
-/// instructions (instruction_set.hpp): near the surface about 0.3 microseconds per particle, of which
-/// contains() takes 0.1. It grows with the number of faces at about the same distance: from the centre of a
-/// sphere the search visits all faces, at some tens of nanoseconds each (docs/exact_map.md). A margin limits
-/// the search for particles outside.
+/// instructions (instruction_set.hpp): near the surface about 0.3 microseconds per particle in total, of
+/// which contains() takes 0.1. It grows with the number of faces at about the same distance: from the centre
+/// of a sphere the search visits all faces, at some tens of nanoseconds each (docs/exact_map.md). A margin
+/// limits the search for particles outside.
 /// @param margin  particles outside also get a contact if the surface is at most this far away; not negative,
 /// NaN counts as 0
 Contact contact(const ExactMapView& map, Vec3f point_local, float margin = 0) noexcept;
 
 /// contains() for many points, with the same answers. It uses vector instructions (instruction_set.hpp), and
 /// for 8 points or more it is up to eight times as fast as single queries. Each thread keeps 90 KB of memory
-/// from its first call on; without that memory the points are processed one by one.
+/// from its first call on; if this memory cannot be allocated, the points are processed one by one.
 /// @param points_local  [n]
 /// @param inside        [n] out: 1 inside, 0 outside. Must not overlap points_local
 /// @param thread_count  0: all cores. Used for 32 768 points or more; the answers do not depend on it
@@ -202,9 +204,9 @@ void contains_batch(const ExactMapView& map, StridedSpan<const Vec3f> points_loc
                     std::span<std::uint8_t> inside, unsigned thread_count = 1) noexcept;
 
 /// contact() for many points, with the same answers, bit for bit, for any number of points. In small or
-/// scattered batches a point costs as much as in contact() or a little less. Where points are closer together
-/// than the width of a few leaves of the tree, sixteen of them share a search and cost half as much or less.
-/// A point at about the same distance from very many faces costs as much as in contact(). Each thread
+/// scattered batches a point costs as much as in contact() or a little less. If points are closer together
+/// than the width of a few leaves of the tree, sixteen of them share a search, and each costs half as much or
+/// less. A point at about the same distance from very many faces costs as much as in contact(). Each thread
 /// keeps 100 KB of memory from its first call on. For more than 256 points the function temporarily allocates
 /// up to 1.1 MB per thread and 1 byte per point. If memory does not suffice, it processes the points one by
 /// one, as slowly as contact().
@@ -218,24 +220,23 @@ void contacts_batch(const ExactMapView& map, StridedSpan<const Vec3f> points_loc
 /// in most signed distance fields. That is the opposite of Contact::depth, which is positive inside.
 ///
 /// The function works for every point, however far away. The value is that of contact() with an infinite
-/// margin, so it is exact for the snapped mesh (within 3.8e-6 R of the distance from the given one) and
-/// rounded to float. The sign is that of contains(), even if the distance is 0: it is then -0 inside, so
-/// std::signbit() tells whether the point is inside. Where parts overlap or are nested, the distance is to
-/// the nearest face, even if that lies inside the solid. For an open surface the sign follows the generalised
-/// winding number; classify() says where it is certain.
+/// margin, so it is exact for the snapped mesh, except for rounding to float, and differs from the distance
+/// to the given mesh by at most 3.8e-6 R. The sign is that of contains(), even if the distance is 0: it is
+/// then -0 inside, so std::signbit() tells whether the point is inside. Where parts overlap or are nested,
+/// the distance is to the nearest face, even if that lies inside the solid. For an open surface the sign
+/// follows the generalised winding number; classify() tells whether it is certain.
 ///
 /// The result is NaN for a point with NaN, and otherwise infinite for a point with infinity. The gradient is
 /// 0 in both cases. The query does not allocate. The cost is that of contact() with an infinite margin.
 /// @param gradient  out, unless null: the unit vector along which the distance grows fastest. It points from
-/// the nearest point of the surface to a point outside, and from a point inside to the nearest point of the
-/// surface. Within two lattice steps of the surface it is the pseudonormal (see contact()). Where several
-/// points of the surface are nearest (on the medial axis), it is that of the first of their faces in the
-/// map's order
+/// the nearest surface point to a query point outside, and from a query point inside to the nearest surface
+/// point. Within two lattice steps of the surface it is the pseudonormal (see contact()). If several surface
+/// points are nearest (on the medial axis), it belongs to the one whose face comes first in the map's order
 float signed_distance(const ExactMapView& map, Vec3f point_local, Vec3f* gradient = nullptr) noexcept;
 
 /// signed_distance() for many points, with the same answers, bit for bit, at the cost of contacts_batch()
-/// with an infinite margin. Memory is that of contacts_batch(), but up to 4.2 MB per thread for more than 256
-/// points.
+/// with an infinite margin. It takes as much memory as contacts_batch(), but up to 4.2 MB per thread for more
+/// than 256 points.
 /// @param points_local  [n]
 /// @param distances     [n] out. Must not overlap points_local
 /// @param gradients     [n] out, or empty if not needed. Must not overlap points_local
@@ -250,9 +251,9 @@ struct SweepHit {
     float fraction = 1; ///< position on the segment: 0 at `from`, 1 at `to`; 1 without a crossing
     Vec3f point;        ///< from + fraction (to - from), local; `to` without a crossing
     /// Outward unit normal of the face; 0 without a crossing. If both sides of the face are solid, or neither
-    /// is, it points out of the face's front.
+    /// is, it is the normal of the face's front.
     Vec3f normal;
-    std::uint32_t face = kNoIndex; ///< its index in the mesh
+    std::uint32_t face = kNoIndex; ///< the index of the crossed face in the mesh
     bool entering = false;         ///< the crossing leads into the solid
 
     bool found() const { return face != kNoIndex; }
@@ -260,25 +261,25 @@ struct SweepHit {
 
 /// The first crossing of a segment with the surface. The test for crossed faces is exact on the lattice.
 ///
-/// The segment is snapped: it connects two lattice points at its ends or, if an end is beyond the lattice,
-/// where it enters the lattice. It deviates from the given segment by at most a lattice step, however far
-/// away the ends are, so all finite points are allowed. If the ends are more than 10^6 R apart, the float
-/// `fraction` is less accurate than `point`.
+/// The segment is snapped: its ends become lattice points or, if an end is beyond the lattice, the point at
+/// which the segment enters the lattice. The snapped segment deviates from the given one by at most a lattice
+/// step, however far away the ends are, so all finite points are allowed. If the ends are more than 10^6 R
+/// apart, the float `fraction` is less accurate than `point`.
 ///
 /// On a closed surface sweep() agrees with contains(): without a crossing the winding number is the same at
 /// both ends. On an open surface the generalised winding number also crosses one half where there is no face,
 /// so contains() may differ at the ends of a segment without a crossing.
 ///
 /// There is no crossing if a point has NaN or infinity. The query does not allocate. A segment within one gap
-/// of a cell takes a few comparisons; other segments test the faces whose boxes they meet before the first
-/// crossing.
+/// of a cell takes a few comparisons; other segments are tested against the faces whose boxes they meet
+/// before the first crossing.
 SweepHit sweep(const ExactMapView& map, Vec3f from_local, Vec3f to_local) noexcept;
 
 /// sweep() for many segments.
 /// @param from_local, to_local  [n]
 /// @param hits                  [n] out. Must not overlap the points
 /// @param thread_count          0: all cores. Used for 32 768 segments or more
-/// @pre all three have the same size
+/// @pre all three arrays have the same size
 void sweep_batch(const ExactMapView& map, StridedSpan<const Vec3f> from_local,
                  StridedSpan<const Vec3f> to_local, std::span<SweepHit> hits,
                  unsigned thread_count = 1) noexcept;
@@ -296,8 +297,8 @@ class ExactMapBuilder {
     ExactMapBuilder& operator=(ExactMapBuilder&&) noexcept;
 
     /// Builds the map of the faces with these vertices, bit-identical to that of ExactMap::build(). Centre,
-    /// radius, lattice and resolution are recomputed. The memory of the previous map is used again unless
-    /// that map or a copy of it still exists.
+    /// radius, lattice and resolution are recomputed. The memory of the previous map is reused unless that
+    /// map or a copy of it still exists.
     /// @throws Error as ExactMap::build() does; the builder can be used again
     [[nodiscard]] ExactMap rebuild(std::span<const Vec3f> vertices);
 
@@ -310,9 +311,9 @@ class ExactMapBuilder {
 /// The map's mesh on its lattice, without the dropped faces, which have no area there.
 struct ExactMapSurface {
     TriangleMesh mesh; ///< local frame
-    /// [face_count] The length of the longest list that contains each face, the largest number of faces that
-    /// a query near it may have to test. It is 0 for a face in no list, which is seen edge-on from the
-    /// centre.
+    /// [face_count] For each face the length of the longest list that contains it: the largest number of
+    /// faces that a query near it may have to test. It is 0 for a face in no list, which is seen edge-on from
+    /// the centre.
     std::vector<std::uint32_t> longest_list;
 };
 ExactMapSurface reconstruct_surface(const ExactMapView& map);

@@ -10,20 +10,20 @@
 
 ECHINUS_EXPORT_BEGIN
 
-/// The arrays of an exact map (exact_map.hpp), for programs that inspect or store maps. Queries need nothing
-/// from this header.
+/// The arrays of an exact map (exact_map.hpp), for programs that inspect or store maps. Programs that only
+/// query maps need nothing from this header.
 namespace echinus {
 
 /// The rule by which the winding number of the surface around a point decides whether the point is inside.
-/// The rules differ only where parts of the surface overlap, are nested, inverted or doubled.
+/// The rules differ only if parts of the surface overlap, or are nested, inverted or doubled.
 enum class InsideRule : std::uint8_t {
-    /// Every winding number except 0 is inside: the union of parts that have the same orientation or do not
-    /// overlap. Where parts of opposite orientation overlap, their numbers cancel.
+    /// Points with any winding number except 0 are inside: the union of parts that have the same orientation
+    /// or do not overlap. Where parts of opposite orientation overlap, their numbers cancel.
     Nonzero,
-    Parity, ///< odd winding numbers are inside: a part within a part is a hole
+    Parity, ///< points with an odd winding number are inside: a part within a part is a hole
 };
 
-/// Indices, in 16 bits where they fit. At most one of the two spans is used.
+/// Indices, in 16 bits if all of them fit. At most one of the two spans is used.
 struct IndexArray {
     std::span<const std::uint16_t> narrow;
     std::span<const std::uint32_t> wide;
@@ -37,7 +37,8 @@ struct IndexArray {
 /// lattice steps of the L1 norm |x| + |y| + |z|.
 struct Band {
     std::uint16_t lower, upper;
-    std::uint32_t first_reference; ///< its faces: references[first_reference] up to the next band's first
+    /// The band's faces are references[first_reference] up to the first one of the next band.
+    std::uint32_t first_reference;
 };
 static_assert(sizeof(Band) == 8);
 
@@ -47,17 +48,17 @@ struct TreeNode {
     static constexpr std::size_t kWidth = 8;
     static constexpr std::uint32_t kLeaf = 0x8000'0000;
 
-    /// Corners in units of ExactMapView::kBoxUnit lattice steps, rounded outwards. A child that does not
-    /// exist has low > high.
+    /// The corners of the boxes, in units of ExactMapView::kBoxUnit lattice steps, rounded outwards. A child
+    /// that does not exist has low > high.
     std::int16_t low[3][kWidth], high[3][kWidth];
-    /// A node, or kLeaf + a group of up to kWidth faces: leaf g holds the faces from kWidth g on.
+    /// The index of a node, or kLeaf + g for a leaf g, which holds up to kWidth faces from kWidth * g on.
     std::uint32_t children[kWidth];
 };
 static_assert(sizeof(TreeNode) == 128);
 
 /// A border edge of the surface: `multiplicity` more faces traverse it from a to b than from b to a.
 struct BorderEdge {
-    std::uint32_t a, b; ///< vertices
+    std::uint32_t a, b; ///< vertex indices
     std::int32_t multiplicity;
 };
 static_assert(sizeof(BorderEdge) == 12);
@@ -73,9 +74,9 @@ struct ExactMapView {
     /// Stored instead of a gap's winding number if the number is not constant in the gap, because the surface
     /// is open.
     static constexpr std::int16_t kUncertain = std::numeric_limits<std::int16_t>::min();
-    /// Stored instead of a gap's winding number if there is no gap, but a long band that was split in two.
-    /// For a particle in the lower half, crossings between the origin and the particle are counted; for one
-    /// in the upper half, those beyond the particle.
+    /// Stored instead of a gap's winding number if there is no gap, because a long band was split in two. For
+    /// a particle in the lower half, the crossings between the origin and the particle are counted; for one
+    /// in the upper half, the crossings beyond the particle.
     static constexpr std::int16_t kSplit = kUncertain + 1;
 
     Vec3f centre;     ///< C, local
@@ -89,11 +90,11 @@ struct ExactMapView {
     /// [band_count + 1] The bands by cell, then outwards; the last one is a sentinel. A band without faces
     /// separates two gaps of an open surface.
     std::span<const Band> bands;
-    /// [band_count] Winding number of the gap between a band and the one below it, or kUncertain or kSplit.
-    /// Beyond a cell's last band it is 0.
+    /// [band_count] The winding number of the gap between a band and the one below it, or kUncertain or
+    /// kSplit. Beyond a cell's last band it is 0 and not stored.
     std::span<const std::int16_t> winding_below;
     IndexArray references; ///< [reference_count] faces
-    /// [reference_count] The parts of its cell that a face touches, one bit for each of 16
+    /// [reference_count] The parts of its cell that a face touches, one bit for each of the 16 parts
     /// (src/directions/octahedral_cells.hpp). A query tests only the faces of its own part.
     std::span<const std::uint16_t> reference_parts;
     /// [vertex_count] The vertices on the lattice. Four bytes before the first one are readable, so that a

@@ -67,8 +67,8 @@ bool is_finite(const Vec3<T>& a) {
 }
 
 /// Converts a point in the frame of a file to one relative to the origin of a mesh or map
-/// (TriangleMesh::origin). It is rounded to float last, so that nothing is lost far from the origin of the
-/// file's frame.
+/// (TriangleMesh::origin). It is rounded to float only after the subtraction, so that no precision is lost
+/// far from the origin of the file's frame.
 inline Vec3f to_local(const Vec3d& point, const Vec3d& origin) {
     return Vec3f(point - origin);
 }
@@ -79,7 +79,7 @@ struct Sphere {
     double radius = 0;
 };
 
-/// A rotation as a unit quaternion w + xi + yj + zk. The length is not checked: a quaternion of another
+/// A rotation as a unit quaternion w + xi + yj + zk. The length is not checked: a quaternion of a different
 /// length is not a rotation, and results computed with it are meaningless. normalised() corrects rounding
 /// errors.
 struct Rotation {
@@ -99,7 +99,7 @@ struct Rotation {
 
     friend constexpr bool operator==(const Rotation&, const Rotation&) = default;
 };
-/// The rotation by `b` followed by that by `a`.
+/// The rotation `b` followed by the rotation `a`.
 Rotation operator*(const Rotation& a, const Rotation& b);
 
 /// A pose: a rotation followed by a translation. The translation is in double, so that a collider may be far

@@ -15,12 +15,12 @@
 
 ECHINUS_EXPORT_BEGIN
 
-/// Exact tests for intersecting faces, for instance to verify the results of a simulation, or a garment and
-/// its body before one. They decide exactly on the float coordinates, without rounding or tolerances. The
-/// answers are the same on every machine.
+/// Exact tests for intersecting faces, for instance to verify the results of a simulation, or to check a
+/// garment and its body before one. The tests are exact for the given float coordinates, without rounding or
+/// tolerances. The answers are the same on every machine.
 namespace echinus {
 
-/// Do two closed triangles have a common point? Touching counts. Corners may coincide or lie on a line; the
+/// Do two closed triangles have a common point? Touching counts. Corners may coincide or be collinear; the
 /// triangle is then the segment or the point that they span. The result is false if a coordinate is not
 /// finite.
 bool triangles_intersect(const std::array<Vec3f, 3>& a, const std::array<Vec3f, 3>& b) noexcept;
@@ -32,8 +32,9 @@ struct FacePair {
     friend auto operator<=>(const FacePair&, const FacePair&) = default;
 };
 
-// Both functions find candidates with trees of boxes over the faces, in O(n log n + pairs of overlapping
-// boxes). A face { v, w, w } is an edge without area, such as a thread segment, and counts as that segment.
+// The following two functions find candidates with trees of boxes over the faces, in O(n log n + pairs of
+// overlapping boxes). A face { v, w, w } is an edge without area, such as a thread segment, and counts as
+// that segment.
 
 /// The intersecting pairs of a face of `a` and a face of `b`, in ascending order, for meshes in the same
 /// frame.
@@ -48,8 +49,8 @@ std::vector<FacePair> intersecting_pairs(const TriangleMesh& a, const TriangleMe
 ///   - with two common vertices, neighbours across an edge, intersect if they are folded onto each other,
 ///   - with three common vertices always intersect.
 ///
-/// Vertices are distinguished by index: call weld() first if equal positions mean the same vertex. A face
-/// whose corner lies on its own opposite edge intersects its neighbours there.
+/// Vertices are distinguished by index: call weld() first if vertices at equal positions are meant to be one.
+/// A face whose corner lies on its own opposite edge intersects its neighbours there.
 /// @throws Error InvalidMesh as require_valid() does
 std::vector<FacePair> self_intersecting_pairs(const TriangleMesh& mesh);
 
@@ -61,16 +62,16 @@ struct IntersectionCurve {
 
 /// Where surfaces intersect, as pairs of faces and as geometry.
 struct Intersections {
-    /// Bounds the memory where surfaces lie on each other: a face then intersects a dozen others.
+    /// Limits the memory for surfaces that lie on each other, in which each face intersects a dozen others.
     static constexpr std::size_t kMostPairs = std::size_t{1} << 25;
 
     std::vector<FacePair> pairs;
-    /// Each pair of faces that cross contributes the segment that both contain. Which segments meet in an end
-    /// is decided exactly; positions are computed in double and rounded. Curves end at the border of a
+    /// Each pair of faces that cross contributes the segment that both contain. Whether segments meet at an
+    /// end is decided exactly; positions are computed in double and rounded. Curves end at the border of a
     /// surface, and where more than two segments meet. Coplanar faces, faces without area, and faces that
     /// touch in a point contribute nothing.
     std::vector<IntersectionCurve> curves;
-    double length = 0; ///< of all curves
+    double length = 0; ///< the total length of all curves
 };
 
 /// The pairs of intersecting_pairs() and their curves, in O(n log n + pairs log pairs).
@@ -87,15 +88,15 @@ Intersections self_intersections(const TriangleMesh& mesh);
 /// translation that moves it out: its distance from the other's surface. Surfaces may also cross where no
 /// vertex is inside; the length of the curves measures that.
 struct Penetration {
-    /// The other mesh is closed, so that it has an inside, and an exact map can hold it. Otherwise the other
-    /// members keep their defaults.
+    /// Whether the depth was measured: the other mesh must be closed, so that it has an inside, and an exact
+    /// map of it must be possible. Otherwise the other members keep their defaults.
     bool known = false;
-    std::uint32_t vertex_count = 0;          ///< inside; vertices that no face uses do not count
+    std::uint32_t vertex_count = 0; ///< the vertices that are inside; those that no face uses do not count
     std::uint32_t deepest_vertex = kNoIndex; ///< the first of equally deep ones
-    float depth = 0;                         ///< of the deepest vertex
+    float depth = 0;                         ///< the depth of the deepest vertex
 };
 
-/// A pair of the given meshes, or one mesh and itself.
+/// The findings about a pair of the given meshes, or about one mesh and itself.
 struct CheckedMeshes {
     std::uint32_t a = 0, b = 0; ///< a <= b; equal for a mesh and itself
     Intersections found;
@@ -105,22 +106,22 @@ struct CheckedMeshes {
 };
 
 struct CheckOptions {
-    /// The names of the meshes in errors, for instance those of their files. If it is empty, they are "mesh
-    /// 0" and so on.
+    /// The names of the meshes in errors, for instance those of their files. If there are none, the meshes
+    /// are called "mesh 0" and so on.
     std::vector<std::string> names = {};
     unsigned thread_count = 0; ///< for the depths; 0: all cores. The results do not depend on it
-    /// Called with the share of the work that is done, 0 to 1, in the thread that called check().
+    /// Called with the completed share of the work, 0 to 1, in the thread that called check().
     std::function<void(double share)> progress = nullptr;
 };
 
 /// Checks every mesh and every pair of meshes, which must all lie in one frame. Intersections of faces are
-/// decided exactly; inside and depth are as accurate as the queries of an exact map (exact_map.hpp), which is
-/// built of each closed mesh. A mesh may lie inside another without intersecting it.
-/// @returns the meshes that intersect, and those of which one has a vertex inside the other, in ascending
-/// order
-/// @throws Error InvalidMesh as intersections() and self_intersections() do; the sentence begins with the
+/// decided exactly; containment and depth are as accurate as the queries of an exact map (exact_map.hpp),
+/// which is built from each closed mesh. A mesh may lie inside another without intersecting it.
+/// @returns the pairs that intersect, or of which one mesh has a vertex inside the other, and the meshes that
+/// intersect themselves, in ascending order
+/// @throws Error InvalidMesh as intersections() and self_intersections() do; the message begins with the
 /// names of the meshes
-/// @throws Error InvalidOptions unless there are as many names as meshes, or none
+/// @throws Error InvalidOptions if there are names, but not as many as meshes
 std::vector<CheckedMeshes> check(std::span<const TriangleMesh> meshes, const CheckOptions& options = {});
 
 } // namespace echinus

@@ -29,7 +29,7 @@ struct TriangleMesh {
     Vec3d origin{};
 };
 
-/// Makes a mesh of positions in double by rounding them to float, relative to an origin if float is too
+/// Makes a mesh from positions in double by rounding them to float, relative to an origin if float is too
 /// coarse for them.
 /// @param positions  [vertex_count]
 TriangleMesh local_mesh(std::span<const Vec3d> positions, std::vector<Triangle> faces);
@@ -62,8 +62,8 @@ struct MeshReport {
     Sphere bounding_sphere;   ///< the smallest that encloses all vertices used by faces
     /// The spacing of floats at the largest coordinate, in the file's frame, if all coordinates are floats
     /// and half of this spacing exceeds a step of a map's lattice, R / 2^19; otherwise 0. If the coordinates
-    /// were rounded before, the error of the shape is up to half the spacing, and so is that of points given
-    /// as floats in that frame.
+    /// have been rounded to float, the shape is wrong by up to half the spacing, and so are points given as
+    /// floats in that frame.
     double rounding_step = 0;
 };
 
@@ -80,9 +80,9 @@ void require_valid(const TriangleMesh& mesh);
 /// @pre points are finite
 Sphere smallest_enclosing_sphere(std::span<const Vec3f> points);
 
-/// The repairs that repair() may make. All are off by default, so a mesh is changed only on request. Those of
-/// all() need no guess. The others make open surfaces and assemblies solid, in ways that suit some meshes and
-/// not others.
+/// The repairs that repair() may make. All are off by default, so a mesh is changed only on request. The
+/// repairs that all() enables require no guesswork. The others make open surfaces and assemblies solid, by
+/// methods that suit some meshes and not others.
 ///
 /// No repair opens a closed mesh.
 struct RepairOptions {
@@ -102,7 +102,7 @@ struct RepairOptions {
     bool flip_inside_out = false;
     /// Closes seams: joins vertices of unbalanced edges that are at most weld_distance apart, drops faces
     /// that then have two equal corners, and fills holes that are no wider, such as those along an edge that
-    /// only the faces on one side subdivide. Nothing is joined if no face would be left.
+    /// is subdivided only by the faces on one side. Nothing is joined if no face would be left.
     bool close_seams = false;
     /// The width of seams in the mesh's unit, at most R, the radius of the bounding sphere. The effective
     /// value is at least 2^-21 R = 4.8e-7 R, a quarter of a map's lattice step, within which maps join
@@ -111,10 +111,10 @@ struct RepairOptions {
     /// Drops faces without area at unbalanced edges, unless they fill a seam: faces whose three corners are
     /// collinear up to the rounding of float.
     bool drop_loose_slivers = false;
-    /// Flips faces so that they agree with the majority of their neighbours, in every patch that is closed
-    /// without the rest of the mesh; a patch consists of faces joined by edges with exactly two faces. Blocks
-    /// that share an edge are such patches. A block that shares a side with another, or all edges of a side,
-    /// is not: its orientation would be a guess. The result may be inside out without flip_inside_out.
+    /// Flips faces so that they agree with the majority of their neighbours, in every patch that is closed by
+    /// itself; a patch consists of faces joined by edges with exactly two faces. Blocks that share only an
+    /// edge are closed patches. A block that shares a side with another block, or all edges of a side, is
+    /// not: its orientation would be a guess. The result may be inside out without flip_inside_out.
     bool orient_faces = false;
 
     /// Fills holes whose border has at most this number of edges, up to kMaxHoleEdges; 0 fills none. A hole
@@ -141,7 +141,7 @@ struct RepairOptions {
 
     static constexpr std::uint32_t kMaxHoleEdges = 256;
 
-    /// All repairs that need no guess.
+    /// All repairs that require no guesswork.
     static constexpr RepairOptions all() {
         RepairOptions options;
         options.drop_duplicate_faces = options.drop_doubled_patches = options.flip_inside_out = true;
@@ -150,8 +150,8 @@ struct RepairOptions {
     }
 };
 
-/// The changes made by repair(). Faces are given by their indices in the input mesh, in ascending order.
-/// Faces that close holes have higher indices.
+/// The changes made by repair(). Faces are given by their indices in the input mesh, in ascending order;
+/// faces that close holes have indices after those.
 struct RepairReport {
     std::vector<std::uint32_t> duplicate_faces_dropped;
     std::vector<std::uint32_t> doubled_patch_faces_dropped;
@@ -179,12 +179,12 @@ struct RepairedMesh {
     RepairReport report;
 };
 
-/// Makes a repaired copy. Makes only the repairs that the options request and reports every change. The order
-/// is: welding of seams, duplicate faces, doubled patches, slivers, orientation, filling of seams, the last
-/// five repeated until nothing changes, holes, inside-out parts, inner faces, sheets. Faces keep their order,
-/// and new faces are appended. Vertices do not change, except those of thickened sheets; some may become
-/// unused. Vertices are distinguished by index: call weld() first, or close seams, if equal positions mean
-/// the same vertex. The same mesh and options give the same bytes on every machine.
+/// Makes a repaired copy. Makes only the repairs that the options request, and reports every change. Seams
+/// are welded first. Then duplicate faces, doubled patches, slivers, orientation and the filling of seams
+/// follow, repeated until nothing changes; then holes, inside-out parts, inner faces and sheets. Faces keep
+/// their order, and new faces are appended. Vertices do not change, except those of thickened sheets; some
+/// may become unused. Vertices are distinguished by index: call weld() first, or close seams, if vertices at
+/// equal positions are meant to be one. The same mesh and options give the same bytes on every machine.
 ///
 /// The time is O(n log n). flip_inside_out adds O(components^2) comparisons of boxes and, where boxes contain
 /// each other, winding numbers; max_hole_edges adds O(border edges * max_hole_edges^2), at most 0.2 ms per

@@ -24,8 +24,8 @@ namespace echinus {
 /// are numbered in the order of the file; a polygon of k corners counts as its k - 2 triangles, and a
 /// triangle strip in a PLY file as its triangles with three different corners. Coordinates are read in
 /// double. If floats could not represent the shape, as with geographic coordinates, the mesh has an origin
-/// (TriangleMesh::origin); otherwise coordinates are rounded to the nearest float. The same file gives the
-/// same mesh.
+/// (TriangleMesh::origin); otherwise coordinates are rounded to the nearest float. The same file always gives
+/// the same mesh.
 ///
 /// Text is ASCII or UTF-8, with or without a byte order mark, with line ends of Unix, Windows or old Macs;
 /// it may be padded with Ctrl-Z or zeros. Bytes after the faces of a binary STL are ignored unless they
@@ -36,8 +36,8 @@ namespace echinus {
 /// placed by their nodes or by the bones of their skins, morphed by their default weights, and copied for
 /// each instance of EXT_mesh_gpu_instancing. Positions may be quantised (KHR_mesh_quantization). A required
 /// extension that is not supported, such as a compression, is a WrongFormat error that names it. Buffers are
-/// looked up in the folder of the file. From a 3DS file the positions in its lists are read; keyframes only
-/// place copies of objects that have several nodes.
+/// looked up in the folder of the file. From a 3DS file the vertex lists are read as they are; keyframes are
+/// used only to place the copies of an object that has several nodes.
 ///
 /// @throws Error Unreadable, WrongFormat, Damaged (a file that is shorter or longer than it declares; the
 /// message names the line or byte) or InvalidMesh (no faces; an index out of range, or a coordinate that
@@ -53,20 +53,20 @@ struct MeshAndEdges {
 /// Reads a mesh like read_mesh(), together with the lines of the file: those of an OBJ (`l`), where a line of
 /// k corners gives k - 1 edges, and polygons of two corners in the other formats. Vertices that only lines
 /// use are kept.
-/// @throws Error as read_mesh(); InvalidMesh only if there are neither faces nor lines
+/// @throws Error as read_mesh() does, but InvalidMesh for a lack of faces only if there are no lines either
 MeshAndEdges read_mesh_and_edges(const std::filesystem::path& path);
 
-/// Writes OBJ, PLY (binary), STL (binary) or OFF, depending on the file name's extension. Floats that are
-/// read back have the same bits. A mesh with an origin is written in the file's frame, in decimals (also in
-/// STL) or as doubles (PLY). The file is written under a temporary name in the target's folder and then
+/// Writes OBJ, PLY (binary), STL (binary) or OFF, depending on the file name's extension. Floats have the
+/// same bits when they are read back. A mesh with an origin is written in the file's frame, in decimals (also
+/// in STL) or as doubles (PLY). The file is written under a temporary name in the target's folder and then
 /// renamed, so a failure leaves no partial file and keeps the old one.
 ///
 /// @throws Error Unwritable, WrongFormat for another extension, or InvalidMesh as inspect() does
 void write_mesh(const std::filesystem::path& path, const TriangleMesh& mesh);
 
 /// Writes a mesh and its edges, as lines of an OBJ. Other formats are allowed only without edges.
-/// @throws Error as write_mesh(); WrongFormat if the format has no lines, InvalidMesh if an edge refers to a
-/// vertex that does not exist
+/// @throws Error as write_mesh() does; WrongFormat if the format has no lines, InvalidMesh if an edge refers
+/// to a vertex that does not exist
 void write_mesh_and_edges(const std::filesystem::path& path, const MeshAndEdges& drawn);
 
 // ---- Tetrahedra ----
@@ -91,9 +91,9 @@ struct TetrahedraFile {
 /// is folded over its neighbour; the message contains their indices, from 0
 TetrahedraFile read_tetrahedra(const std::filesystem::path& path);
 
-/// Writes .msh (Gmsh 2.2, text) or .vtk (legacy, text), depending on the file name's extension. Floats that
-/// are read back have the same bits; a mesh with an origin is written as doubles in the file's frame. The
-/// file is replaced as in write_mesh().
+/// Writes .msh (Gmsh 2.2, text) or .vtk (legacy, text), depending on the file name's extension. Floats have
+/// the same bits when they are read back; a mesh with an origin is written as doubles in the file's frame.
+/// The file is replaced as in write_mesh().
 ///
 /// @throws Error Unwritable, WrongFormat for another extension, or InvalidMesh as
 /// require_valid_tetrahedra() does
@@ -107,8 +107,8 @@ void write_tetrahedra(const std::filesystem::path& path, const TetrahedralMesh& 
 /// skinned (linear blend skinning; the weights of a vertex are normalised to a sum of 1), and others move
 /// with their nodes; morph targets are applied first. Between two keys, positions, scales and weights of
 /// morph targets are interpolated linearly, and rotations along the shorter arc; spline and step
-/// interpolation are not supported. A 3DS file has 25 frames per second. A cache takes 12 bytes per vertex
-/// and sample.
+/// interpolation are not supported. A 3DS file gives no frame rate; 25 frames per second are assumed. A cache
+/// takes 12 bytes per vertex and sample.
 ///
 /// @param mesh               the model, as returned by read_mesh()
 /// @param frames_per_second  positive

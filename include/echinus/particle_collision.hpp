@@ -17,13 +17,13 @@ namespace echinus {
 
 struct ParticleCollisionOptions {
     /// Coulomb's coefficient; 0 is no friction. The tangential motion is reduced by the coefficient times the
-    /// length of the push-out, and is not reversed.
+    /// length of the push-out, but at most to 0.
     double friction = 0.5;
     /// Accept exact maps of open meshes. Nothing is guaranteed for them: near a hole the inside is only
     /// estimated, so particles may get in there.
     bool allow_open_colliders = false;
-    /// Threads that share the work of correct(); 0 means all cores. The results are bit-identical for any
-    /// number. More than one thread needs oneTBB; they spin while they wait during a call.
+    /// The number of threads that share the work of correct(); 0 means all cores. The results are
+    /// bit-identical for any number. More than one thread needs oneTBB; waiting threads spin during a call.
     unsigned thread_count = 1;
 };
 
@@ -52,9 +52,9 @@ struct SolverStep {
 /// surface, however fast it or the models move and however thin they are: it is swept from its position at
 /// the start of the step in the frame of each collider, which moves from its previous pose to its present one
 /// (see sweep() of a Collider). The exceptions, which lost_count() counts, are particles between colliders
-/// that leave less room than the thickness, and holes of open meshes. A particle that begins inside is moved
-/// to the nearest surface point. With distance maps and custom maps, particles are not swept, but pushed out
-/// if they end a step inside.
+/// that leave less room than the thickness, and particles near holes of open meshes. A particle that begins
+/// inside is moved to the nearest surface point. With distance maps and custom maps, particles are not swept,
+/// but pushed out if they end a step inside.
 ///
 /// Between steps the object remembers the surfaces around each particle, so that particles that hardly move
 /// need no query, and the last free position of each particle. Copies are independent. Different threads may
@@ -65,11 +65,11 @@ class ParticleCollision {
     /// the origin along an axis.
     static constexpr float kFarthest = 1e12F;
 
-    /// @param colliders  with any kind of map, in their initial poses; their velocities are ignored, but must
-    /// be finite
-    /// @param thickness  the distance in units that particles keep from the surface, 0 to 1e9; at least 16
-    ///                   steps of the map's lattice (2^-19 of its radius). A particle that is swept to a
-    ///                   surface may be closer until the next step. See docs/thickness.md
+    /// @param colliders  colliders with any kind of map, in their initial poses; their velocities are
+    /// ignored, but must be finite
+    /// @param thickness  the distance in units that particles keep from the surface, 0 to 1e9; the effective
+    ///                   value is at least 16 steps of the map's lattice (2^-19 of its radius). A particle
+    ///                   that is swept to a surface may be closer until the next step. See docs/thickness.md
     /// @throws Error InvalidOptions
     ParticleCollision(std::vector<Collider> colliders, double thickness,
                       const ParticleCollisionOptions& options = {});
@@ -97,20 +97,20 @@ class ParticleCollision {
     /// Corrects the particles after a step of the solver, and moves the colliders.
     ///
     /// A particle closer to a surface than the thickness is moved out along the normal, and friction reduces
-    /// its motion along the surface. Its velocity changes accordingly and then has no component into the
-    /// surface, relative to the moving material of the collider; impacts do not bounce. Velocities are those
-    /// at the end of the step; a solver without velocities may use (position - previous) / seconds.
+    /// its motion along the surface. Its velocity changes accordingly: relative to the moving material of the
+    /// collider it then has no component into the surface, so particles do not bounce. Velocities are those
+    /// at the end of the step; a solver without velocities may pass (position - previous) / seconds.
     ///
-    /// A particle whose position has exploded stays as it is and collides with nothing; one whose previous
+    /// A particle whose position has exploded is not changed and collides with nothing; one whose previous
     /// position has exploded starts at its present position. A velocity that is not finite is not changed. If
-    /// a particle's previous position is not that at the end of the last step, because the solver moved it
-    /// elsewhere, collision starts afresh for it. If the number of particles changes, it starts afresh for
-    /// all.
+    /// a particle's previous position differs from its position at the end of the last step, because the
+    /// solver has moved the particle, its collision starts afresh. If the number of particles changes,
+    /// collision starts afresh for all.
     ///
-    /// The cost is O(n) for each collider that particles may be near, by bounding spheres: about 20 ns for a
+    /// The cost is O(n) for each collider whose bounding sphere particles may touch: about 20 ns for a
     /// particle away from surfaces, and less than 1 us for a particle that moves along them
-    /// (docs/own_solver.md). The function allocates only in the first step, with another number of particles,
-    /// after place_collider(), and in a thread's first batches (docs/conventions.md).
+    /// (docs/own_solver.md). The function allocates only in the first step, when the number of particles
+    /// changes, after place_collider(), and in a thread's first batches (docs/conventions.md).
     /// @param seconds  the duration of the step; positive
     /// @return the indices of particles whose positions were corrected, ascending; valid until the next call
     /// @throws Error InvalidOptions for arrays of different sizes, an inverse mass that is negative or not
@@ -119,8 +119,8 @@ class ParticleCollision {
 
     /// The colliders in their present poses.
     const std::vector<Collider>& colliders() const;
-    /// The number of times that a particle that was once outside ended a step inside an exact map, or on the
-    /// other side of its surface.
+    /// The number of times that a particle ended a step inside an exact map of which it had once been
+    /// outside, or on the other side of its surface.
     std::uint64_t lost_count() const;
 
   private:

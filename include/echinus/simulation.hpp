@@ -20,18 +20,19 @@
 
 ECHINUS_EXPORT_BEGIN
 
-/// Simulation of deformable models, cloth and soft bodies. The default solver treats them as continuous
-/// materials in implicit steps, with contact and friction in the same energy (docs/mechanics.md). The other
-/// solver is that of the paper's simulations (section 2.3), after Jakobsen, "Advanced Character Physics" (GDC
-/// 2001): particles are moved by Verlet integration, distance constraints (*sticks*) between them are
-/// relaxed one after the other, and each relaxation includes collision with rigid models.
+/// Simulation of deformable models: cloth and soft bodies. The default solver treats them as continuous
+/// materials and takes implicit steps, in which contact and friction are part of the energy
+/// (docs/mechanics.md). The other solver is that of the paper's simulations (section 2.3), after Jakobsen,
+/// "Advanced Character Physics" (GDC 2001): particles are moved by Verlet integration, distance constraints
+/// (*sticks*) between them are relaxed one after the other, and each relaxation includes collision with rigid
+/// models.
 namespace echinus {
 
 /// The purpose of a distance constraint; each kind has its own stiffness.
 enum class ConstraintKind : std::uint8_t {
     Structural, ///< between neighbours in a row or column: resists stretching
     Shear,      ///< between neighbours along a diagonal: resists shear
-    Bending,    ///< between every second particle in a row or column: resists bending
+    Bending,    ///< between a particle and the next but one in a row or column: resists bending
 };
 inline constexpr std::size_t kConstraintKindCount = 3;
 
@@ -49,22 +50,22 @@ struct Attachment {
     std::uint32_t collider = 0; ///< index in the simulation's colliders
 };
 
-/// A particle and a collider that do not collide. Faces and edges of the particle also pass through that
-/// collider.
+/// A particle and a collider that do not collide. Faces and edges that contain the particle also pass through
+/// the collider.
 struct CollisionFilter {
     std::uint32_t particle;
     std::uint32_t collider = 0; ///< index in the simulation's colliders
 };
 
-/// Particles that are held, moved along a path, and released.
+/// Particles that are held, moved along a path, and finally released.
 struct Handle {
     std::vector<std::uint32_t> particles; ///< not pinned, each in at most one handle
     /// The path of the handle: poses over the time since the simulation began, interpolated as in pose_at().
     /// The particles move rigidly with the handle from their positions at 0 s. Without keys the handle does
     /// not move.
     std::vector<PoseKey> keys{};
-    /// The time in seconds after which the handle releases its particles, in the first frame that begins then
-    /// or later; they keep their velocity. If infinite, they are not released.
+    /// The time in seconds at which the handle releases its particles: in the first frame that begins then or
+    /// later. They keep their velocity. If the time is infinite, they are not released.
     double release_time = std::numeric_limits<double>::infinity();
 };
 
@@ -75,17 +76,17 @@ struct Deformable {
     /// here.
     std::vector<Vec3f> velocities{};
     /// [particle_count] 1 / mass; 0 for a pinned particle, which stays in place or moves with its attachment.
-    /// Where surfaces collide, it gives way to anything that would meet it, and returns afterwards. Jakobsen:
-    /// in any unit, since only ratios matter. Newton takes the masses of soft bodies from here, in kg, and
-    /// those of cloth from its ClothMaterial.
+    /// If surfaces collide, a pinned particle gives way to anything that would meet it, and returns
+    /// afterwards. With Jakobsen masses may have any unit, since only their ratios matter. Newton takes the
+    /// masses of soft bodies from here, in kg, and those of cloth from its ClothMaterial.
     std::vector<float> inverse_masses;
     /// The distance constraints, in the order in which Jakobsen relaxes them. Newton uses only structural
     /// constraints that are not edges of faces: threads.
     std::vector<DistanceConstraint> constraints;
     std::vector<Triangle> faces;           ///< for Newton's cloth, rendering, wind and surface collision
-    std::vector<Attachment> attachments{}; ///< of pinned particles, at most one for each
-    /// The elements of soft bodies. A particle of theirs that is in no face is an interior particle and does
-    /// not collide.
+    std::vector<Attachment> attachments{}; ///< attachments of pinned particles, at most one for each
+    /// The elements of soft bodies. A particle of an element that belongs to no face is an interior particle
+    /// and does not collide.
     std::vector<ElasticTetrahedron> tetrahedra{};
     std::vector<CollisionFilter> filters{}; ///< in any order
     /// [particle_count] The rest shape, in any pose. If empty, it is the initial shape, which a simulation
@@ -97,14 +98,14 @@ struct Deformable {
     std::size_t particle_count() const { return positions.size(); }
 };
 
-/// The same deformable, with filters that disable collision of all its particles with a collider. After
+/// Adds filters to a deformable that disable the collision of all its particles with a collider. After
 /// combine(), the filters apply to this part only.
 Deformable passing_through(std::uint32_t collider, Deformable deformable);
 
-/// [particle_count] 1 for the particles that pass through a collider by the deformable's filters; empty if
-/// there are none. Filters of particles that the deformable does not have are ignored.
+/// [particle_count] 1 for each particle that passes through a collider because of the deformable's filters;
+/// empty if there is none. Filters of particles that the deformable does not have are ignored.
 std::vector<std::uint8_t> let_through(const Deformable& deformable, std::size_t collider);
-/// Does a face pass through the collider, because one of its particles does? @param passes  as returned by
+/// Does a face pass through the collider, that is, does one of its particles? @param passes  as returned by
 /// let_through()
 inline bool passes_through(const Triangle& face, std::span<const std::uint8_t> passes) {
     return !passes.empty() && (passes[face[0]] | passes[face[1]] | passes[face[2]]) != 0;
@@ -113,7 +114,7 @@ inline bool passes_through(const Triangle& face, std::span<const std::uint8_t> p
 // ---- Cloth ----
 
 /// A rectangular sheet of cloth at rest. In its local frame the middle of the sheet is at the origin, columns
-/// follow each other along x, rows along y, and z is the normal.
+/// follow each other along x and rows along y, and z is the normal.
 struct ClothOptions {
     std::uint32_t column_count = 100; ///< particles along x; at least 2
     std::uint32_t row_count = 100;    ///< particles along y; at least 2
@@ -123,9 +124,9 @@ struct ClothOptions {
     std::vector<std::uint32_t> pins{}; ///< particles that do not move: row * column_count + column
 };
 
-/// Makes a sheet with structural, shear and bending constraints; 100 x 100 particles have 59 002 of them.
-/// Particle (row, column) has the index row * column_count + column; the front of every face points along the
-/// sheet's local z. Constraints are ordered row by row.
+/// Makes a sheet with structural, shear and bending constraints; a sheet of 100 x 100 particles has 59 002 of
+/// them. Particle (row, column) has the index row * column_count + column; the front of every face points
+/// along the sheet's local z. Constraints are ordered row by row.
 /// @throws Error InvalidOptions
 Deformable make_cloth(const ClothOptions& options);
 
@@ -144,9 +145,9 @@ struct MeshClothOptions {
 };
 
 /// Makes a cloth of any shape: a garment, a sheet with holes, a closed bag, or several pieces at once, in O(n
-/// log n). Its particles are the mesh's vertices and its faces those of the mesh. Faces that traverse a
-/// common edge in the same direction as an earlier face are flipped. On a one-sided surface that is not
-/// possible everywhere; this affects only rendering.
+/// log n). Its particles are the mesh's vertices and its faces those of the mesh. A face that traverses a
+/// common edge in the same direction as an earlier face is flipped. On a one-sided surface faces cannot agree
+/// everywhere, which affects only rendering.
 ///
 /// Each edge and each thread gets a structural constraint. Two triangles that form a quadrilateral with
 /// nearly right angles (within 20 degrees) get shear constraints along both diagonals instead of one along
@@ -168,8 +169,8 @@ Deformable make_cloth(const TriangleMesh& mesh, const MeshClothOptions& options)
 /// one position, and cloth at the end of a swing is slow for a moment.
 ///
 /// With SolverKind::Jakobsen, a much lower speed may not be reached: gravity alone adds 0.04 units per second
-/// in one frame of 1/240 s, and a particle that contacts and constraints move slightly back and forth keeps
-/// trembling at such a speed.
+/// in one frame of 1/240 s, and a particle that contacts and constraints push slightly back and forth keeps
+/// trembling at about this speed.
 struct RestCondition {
     double distance = 0.001;        ///< units
     double speed = 0.1;             ///< units per second, at the end of a frame; may be infinite
@@ -180,57 +181,58 @@ struct RestCondition {
 /// tetrahedra are not cloth: bodies have their own material.
 struct ClothMaterial {
     double density = 0.2;            ///< mass per area, kg/m^2; positive
-    double stretch_stiffness = 1000; ///< force per width of warp and weft, N/m; positive. A thread is as
+    double stretch_stiffness = 1000; ///< force per width along warp and weft, N/m; positive. A thread is as
                                      ///< stiff as a strip whose width is the mean edge length
     double shear_stiffness = 400;    ///< between warp and weft, N/m; not negative
     double bending_stiffness = 1e-5; ///< N m; not negative
     double damping = 0.01; ///< viscosity divided by stiffness, seconds; not negative. Motions that take much
-                           ///< longer are hardly damped
+                           ///< longer than this are hardly damped
 
     bool operator==(const ClothMaterial&) const = default;
 };
 
 /// The parts of a deformable that collide.
 enum class CollisionMode : std::uint8_t {
-    /// Particles collide with colliders. An edge of the model may protrude between them.
+    /// Particles collide with colliders. An edge of a collider may protrude between particles.
     Particles,
     /// Edges and faces collide with colliders, too: no face of the deformable intersects a collider, within
-    /// the limits of docs/limits.md (docs/surfaces.md explains the method). A collider needs an exact map for
-    /// that, as its map or as ColliderMap::surface; with one that has none only particles collide. The exact
-    /// map of an open mesh does not need allow_open_colliders, and keeps each particle on its side. At the
-    /// start nothing may intersect and no particle may be inside a closed model (but see
-    /// NewtonOptions::untangle).
+    /// the limits of docs/limits.md (docs/surfaces.md explains the method). This needs an exact map of the
+    /// collider, as its map or as ColliderMap::surface; with a collider that has none only particles collide.
+    /// The exact map of an open mesh does not need allow_open_colliders, and keeps each particle on its side
+    /// of the surface. In the initial state nothing may intersect and no particle may be inside a closed
+    /// model (but see NewtonOptions::untangle).
     Surfaces,
     /// The faces of the deformable do not intersect each other either.
     SurfacesAndSelf,
 };
 
 /// A continuous material in SI units (docs/mechanics.md): each step minimises the energy of inertia, material
-/// and contact by Newton's method with multigrid. Cloth and soft bodies stretch as their materials say,
+/// and contact by Newton's method with multigrid. Cloth and soft bodies stretch according to their materials,
 /// whatever the resolution and the time step; 1/60 s per frame is a good step.
 struct NewtonOptions {
     ClothMaterial material{};
-    /// Largest number of steps of Newton's method in each frame or substep, and twice as many while there is
-    /// no contact; fewer are taken if it converges. Fewer than two leave contacts unresolved.
+    /// The largest number of steps of Newton's method in each frame or substep; twice as many are allowed
+    /// while there is no contact. Fewer are taken if it converges. With a limit below two, contacts remain
+    /// unresolved.
     std::uint32_t step_count = 4;
     /// Tolerance of Newton's method, relative to the mean edge length. It has converged if the decrease of
     /// the energy corresponds to a root-mean-square displacement of at most this length.
     double tolerance = 5e-4;
-    /// Resistance of still air, 1/s: the rate at which a free velocity decays, whatever the time step. 0 is a
-    /// vacuum.
+    /// Resistance of still air, 1/s: the rate at which the velocity of a free particle decays, whatever the
+    /// time step. 0 is a vacuum.
     double air_drag = 0.5;
-    /// Pressure inside the closed pieces of cloth in excess of the surrounding pressure, N/m^2. It is
-    /// constant, like that of a pump, and pushes each face outwards. Not negative.
+    /// Pressure inside closed pieces of cloth in excess of the surrounding pressure, N/m^2. It is constant,
+    /// as if a pump maintained it, and pushes each face outwards. Not negative.
     double pressure = 0;
     CollisionMode collision = CollisionMode::SurfacesAndSelf;
     /// Distance in units that layers of the deformable keep from each other; by default the thickness. It is
-    /// less near small faces: at most 0.4 of the least height of a face, and a quarter of the mean edge
-    /// length, so that neighbours have room.
+    /// less near small faces: at most 0.4 of the smallest height of a face, and at most a quarter of the mean
+    /// edge length, so that neighbours have room.
     std::optional<double> self_thickness{};
     /// Separate an initial state that intersects a model or itself, or lies inside a closed model, before the
     /// first frame instead of rejecting it, by moving particles that are not pinned. An initial state that
-    /// cannot be separated is rejected. It takes up to about a hundred times the time of a search for
-    /// intersecting pairs (intersections.hpp). Needs the collision of surfaces.
+    /// cannot be separated is rejected. This takes up to about a hundred times as long as a search for
+    /// intersecting pairs (intersections.hpp), and needs the collision of surfaces.
     bool untangle = false;
 
     bool operator==(const NewtonOptions&) const = default;
@@ -238,11 +240,11 @@ struct NewtonOptions {
 
 /// The paper's method (section 2.3), for reproduction and comparison: Verlet integration, distance
 /// constraints, relaxed one after the other (Jakobsen 2001), and collision of particles. Each relaxation of a
-/// constraint removes a share of its error. More relaxations per second make a stiffer cloth, so frames of
-/// 1/240 s or less are needed: halving the step doubles the computing time and leaves a quarter of the
-/// stretch. This solver rejects tetrahedra and measures no loads.
+/// constraint removes a share of its error. More relaxations per second make the cloth stiffer, so frames of
+/// 1/240 s or less are needed: halving the step doubles the computing time and reduces the stretch to a
+/// quarter. This solver rejects tetrahedra and measures no loads.
 struct JakobsenOptions {
-    /// Number of relaxations per frame, of all distance constraints and then of all contacts. More
+    /// Number of relaxations per frame; each relaxes all distance constraints and then all contacts. More
     /// relaxations take longer and leave less stretch.
     std::uint32_t iteration_count = 10;
     double drag = 0.005; ///< share of the velocity that is lost per frame, 0 to 1
@@ -250,13 +252,13 @@ struct JakobsenOptions {
     /// value between 1 and 2 overshoots, which propagates tension farther per relaxation.
     std::array<double, kConstraintKindCount> stiffness{1, 1, 0.3};
     /// If false, no particle is rescued; those that cross the surface of an exact map are counted as lost and
-    /// stay there. This only serves to demonstrate the effect of the proof at the end of a frame.
+    /// stay there. This serves only to demonstrate the effect of the proof at the end of a frame.
     bool keep_free = true;
 
     bool operator==(const JakobsenOptions&) const = default;
 };
 
-/// The method by which a deformable moves: the alternatives of SimulationOptions::solver, in their order.
+/// The solver that moves a deformable: the alternatives of SimulationOptions::solver, in their order.
 enum class SolverKind : std::uint8_t { Newton, Jakobsen };
 
 struct SimulationOptions {
@@ -266,29 +268,32 @@ struct SimulationOptions {
     /// Distance in units that the deformable keeps from colliders. By default it is half the mean rest length
     /// of the structural constraints or, for soft bodies, half the mean edge length (docs/thickness.md).
     /// Newton: at least a fiftieth of the mean edge length. Jakobsen: 0 is possible but slow, since particles
-    /// on the surface itself need a query in every relaxation, and the model intersects one face in twenty.
+    /// on the surface itself need a query in every relaxation, and then one face in twenty intersects the
+    /// model.
     std::optional<double> thickness{};
-    /// Coulomb's coefficient; 0 is no friction. Jakobsen: the tangential motion relative to the collider is
-    /// reduced by the coefficient times the length of the push-out, and is not reversed.
+    /// Coulomb's coefficient of friction; 0 is no friction. Jakobsen: the tangential motion relative to the
+    /// collider is reduced by the coefficient times the length of the push-out, but at most to 0.
     double friction = 0.5;
     RestCondition rest{};
     /// Accept exact maps of open meshes for the collision of particles. Nothing is guaranteed for them: near
-    /// a hole the inside is only estimated, so particles get in there, and some are pushed out through the
-    /// surface; lost_count counts them. Prefer a closed mesh (see repair()) or a distance map.
+    /// a hole the inside is only estimated, so particles get in there, and some of them are pushed out
+    /// through the surface and count as lost (lost_count). Prefer a closed mesh (see repair()) or a distance
+    /// map.
     bool allow_open_colliders = false;
-    /// Largest distance in units of a particle from the initial middle of the deformable. A particle farther
-    /// away ends the simulation as diverged. 0 means 10 000 times the initial extent of the deformable.
+    /// The largest distance, in units, of a particle from the initial middle of the deformable. If a particle
+    /// is farther away, the simulation ends as diverged. 0 means 10 000 times the initial extent of the
+    /// deformable.
     double bound = 0;
-    /// Threads that compute a frame; 0 means all cores. The results are bit-identical for any number. More
-    /// than one thread needs oneTBB; they spin while they wait during a frame.
+    /// The number of threads that compute a frame; 0 means all cores. The results are bit-identical for any
+    /// number. More than one thread needs oneTBB; waiting threads spin during a frame.
     unsigned thread_count = 1;
-    /// Wind in every frame for which blow() is not called, with the arguments of blow(). A rate of 0 means no
-    /// air; then the wind must be 0, too.
+    /// The wind in every frame for which blow() is not called, given by the arguments of blow(). A rate of 0
+    /// means no air; the wind must then be 0, too.
     Vec3d wind{};         ///< units per second
     double wind_rate = 0; ///< per second
 
     SolverKind kind() const { return static_cast<SolverKind>(solver.index()); }
-    /// The options of the solver that is set. @throws std::bad_variant_access if it is the other one
+    /// The options of the solver that is set. @throws std::bad_variant_access if the other solver is set
     NewtonOptions& newton() { return std::get<NewtonOptions>(solver); }
     const NewtonOptions& newton() const { return std::get<NewtonOptions>(solver); }
     JakobsenOptions& jakobsen() { return std::get<JakobsenOptions>(solver); }
@@ -310,43 +315,46 @@ struct SolverChoice {
     NewtonOptions newton{};
     JakobsenOptions jakobsen{};
 
-    /// The options that are set, and the defaults of the other solver; with Jakobsen only particles collide.
+    /// Takes the options that are set, and the defaults of the other solver; with Jakobsen its collision mode
+    /// is CollisionMode::Particles.
     explicit SolverChoice(const SimulationOptions& options);
     /// The options of the chosen solver.
     std::variant<NewtonOptions, JakobsenOptions> chosen() const;
-    /// @throws Error InvalidOptions, naming an option that only the other solver has and that does not have
-    /// its default. CollisionMode::Particles is accepted with Jakobsen
+    /// @throws Error InvalidOptions, naming the option, if an option that only the other solver has differs
+    /// from its default. CollisionMode::Particles is accepted with Jakobsen
     void require_defaults_of_other() const;
 };
 
 /// A force and a torque on a collider, in world axes.
 struct Load {
     Vec3d force;  ///< N
-    Vec3d torque; ///< N m, about the pose's translation, as it moves
+    Vec3d torque; ///< N m, about the pose's translation, which moves
 };
 
 /// A contact that exerted a force in the last frame, between a particle, edge or face of the deformable and a
 /// collider, or between two elements of the deformable.
 struct ContactPoint {
-    Vec3d position;         ///< on the deformable, when the contact last exerted a force; world coordinates
-    Vec3d normal;           ///< unit, towards the deformable or, in self-collision, its first element
-    double gap;             ///< when the contact last exerted a force; positive
-    double normal_impulse;  ///< in the frame, along the normal, on the deformable or its first element, N s
-    Vec3d friction_impulse; ///< the same, perpendicular to the normal, N s
-    std::uint32_t collider; ///< kNoIndex: the deformable is in contact with itself
-    /// The particles of the deformable's element, followed in self-collision by those of the second one: a
-    /// vertex and the three corners of a face, or the two ends of either edge. Unused entries are kNoIndex.
+    Vec3d position;        ///< on the deformable, when the contact last exerted a force; world coordinates
+    Vec3d normal;          ///< unit, towards the deformable or, in self-collision, its first element
+    double gap;            ///< the distance when the contact last exerted a force; positive
+    double normal_impulse; ///< impulse of the frame along the normal, on the deformable or its first element,
+                           ///< N s
+    Vec3d friction_impulse; ///< impulse of the frame perpendicular to the normal, N s
+    std::uint32_t collider; ///< kNoIndex if the deformable is in contact with itself
+    /// The particles of the deformable's element, followed in self-collision by those of the second element:
+    /// a vertex and the three corners of a face, or the two ends of each edge. Unused entries are kNoIndex.
     std::array<std::uint32_t, 4> particles;
 };
 
 /// Times and counts of step() since the simulation began. Times vary from run to run.
 struct SimulationProfile {
-    double integration_seconds = 0;  ///< Jakobsen: Verlet, and the check for divergence and rest
-    double constraint_seconds = 0;   ///< Newton: its steps; Jakobsen: distance constraints
-    double collision_seconds = 0;    ///< contact, and moving the colliders
-    std::uint64_t query_count = 0;   ///< Jakobsen: particle queries, counted per iteration and collider
-    std::uint64_t contact_count = 0; ///< Newton: active contacts, per step; Jakobsen: queries that pushed
-    /// Jakobsen: queries that needed the map; with an exact map, the query of a particle that has hardly
+    double integration_seconds = 0; ///< Jakobsen: Verlet integration, and the checks for divergence and rest
+    double constraint_seconds = 0;  ///< Newton: the steps of its method; Jakobsen: distance constraints
+    double collision_seconds = 0;   ///< contact and the motion of colliders
+    std::uint64_t query_count = 0;  ///< Jakobsen: particle queries, counted per iteration and collider
+    std::uint64_t contact_count =
+        0; ///< Newton: active contacts, summed over steps; Jakobsen: queries that pushed
+    /// Jakobsen: queries that needed the map; with an exact map, the query for a particle that has hardly
     /// moved is answered from cached data.
     std::uint64_t map_query_count = 0;
     /// Jakobsen: number of times that a particle was rescued, that is, moved back to a free position because
@@ -357,15 +365,15 @@ struct SimulationProfile {
     /// map of which it had once been free. It counts once for each such map, and again in each such frame. A
     /// particle that began inside and has not been outside yet does not count.
     std::uint64_t lost_count = 0;
-    /// Where surfaces collide: number of times that the displacement of a particle in a frame or substep was
-    /// truncated, because its edges or faces could have met a surface on the path.
+    /// If surfaces collide: number of times that the displacement of a particle in a frame or substep was
+    /// truncated, because an edge or face of the particle could have met a surface on the path.
     std::uint64_t truncated_count = 0;
-    /// Where surfaces collide: vertex-face and edge-edge pairs whose distance was measured.
+    /// If surfaces collide: number of vertex-face and edge-edge pairs whose distance was measured.
     std::uint64_t measured_pair_count = 0;
-    /// Where surfaces collide: unresolved vertex-face and edge-edge pairs, for which no free space was proven
-    /// at the start of a substep, summed over all substeps: colliders left no room between them. While it is
-    /// 0, no faces intersect at the end of a frame, except by rounding hundreds of a collider's radii away
-    /// from the origin, which is not counted (docs/limits.md).
+    /// If surfaces collide: number of unresolved vertex-face and edge-edge pairs, for which no free space was
+    /// proven at the start of a substep because colliders left no room, summed over all substeps. While it is
+    /// 0, no faces intersect at the end of a frame, except because of rounding at hundreds of a collider's
+    /// radii from the origin, which is not counted (docs/limits.md).
     std::uint64_t unresolved_count = 0;
 };
 
@@ -375,13 +383,13 @@ struct Residual {
     double root_mean_square = 0, largest = 0; ///< 0 without such constraints
 };
 
-/// A cut, as in a film: objects are elsewhere from one frame to the next, without moving in between.
+/// A cut, as in a film: objects change their position from one frame to the next without moving in between.
 struct Teleport {
     RigidTransform motion; ///< a point p goes to motion.to_world(p); velocities rotate with it
     /// Indices of the colliders that are teleported, with their keyframes.
     std::vector<std::uint32_t> colliders{};
-    /// Whether the deformable is teleported, with pinned particles and the paths of handles. Colliders to
-    /// which particles are attached must be teleported with it.
+    /// Whether the deformable is teleported, together with pinned particles and the paths of handles.
+    /// Colliders to which particles are attached must be teleported with it.
     bool deformable = true;
     /// Seconds since the simulation began: the cut takes place in the first frame that begins then or later.
     double time = 0;
@@ -394,14 +402,14 @@ class [[gnu::visibility("hidden")]] Solver; // src/simulation/solver.hpp
 /// Copies are independent.
 class Simulation {
   public:
-    /// Prepares a simulation. With Jakobsen it allocates all memory that step() needs, except what each
-    /// thread keeps from its first batches on (docs/conventions.md). Rotations whose length differs from 1 by
-    /// at most 1e-4, as after rounding to float, are normalised.
+    /// Prepares a simulation. With Jakobsen it allocates all memory that step() needs, except for the memory
+    /// that each thread keeps from its first batches on (docs/conventions.md). Rotations whose length differs
+    /// from 1 by at most 1e-4, as after rounding to float, are normalised.
     /// @throws Error InvalidOptions, naming the fault, when an option is out of range, the arrays of the
     /// deformable do not fit together, a constraint or a face refers to a particle that does not exist, a
     /// number is not finite, or a collider has a scale of 0, a rotation that does not have unit length, a
-    /// null pointer for a map, or, where only particles collide, the exact map of an open mesh without
-    /// options.allow_open_colliders. Where surfaces collide, it is also thrown when the deformable initially
+    /// null pointer for a map, or, if only particles collide, the exact map of an open mesh without
+    /// options.allow_open_colliders. If surfaces collide, it is also thrown when the deformable initially
     /// intersects a collider or, with CollisionMode::SurfacesAndSelf, itself, or is inside a collider, and
     /// untangle is not set or could not separate them: the message names the first pairs
     Simulation(Deformable deformable, std::vector<Collider> colliders, const SimulationOptions& options);
@@ -411,41 +419,42 @@ class Simulation {
     Simulation(Simulation&& other) noexcept;
     Simulation& operator=(Simulation&& other) noexcept;
 
-    /// Computes one frame. Newton: colliders advance by their velocities and carry along nearby particles;
-    /// then the energy is minimised, and every step towards the minimum is limited so that faces stay apart:
-    /// when a frame ends, no face intersects a collider or, with CollisionMode::SurfacesAndSelf, another
-    /// face. docs/limits.md lists the limits; unresolved_count counts most of the cases in which they were
-    /// exceeded. A frame in which a collider moves far, or in which there is no room to move, is divided into
-    /// up to 64 substeps. Memory is kept from frame to frame: a frame that needs no more than the previous
-    /// ones allocates nothing, except for the maps of deforming colliders.
+    /// Computes one frame. Newton: colliders advance by their velocities and carry nearby particles along;
+    /// then the energy is minimised, and every step towards the minimum is limited so that faces stay apart.
+    /// When a frame ends, no face intersects a collider or, with CollisionMode::SurfacesAndSelf, another
+    /// face. docs/limits.md lists the limits; unresolved_count counts most of the cases in which the
+    /// guarantee did not hold. A frame in which a collider moves far, or in which there is no room to move,
+    /// is divided into up to 64 substeps. Memory is kept from frame to frame: a frame that needs no more than
+    /// the previous ones allocates nothing, except for the maps of deforming colliders.
     ///
     /// Jakobsen: a frame consists of Verlet integration with drag, the motion of the colliders,
     /// iteration_count relaxations of all distance constraints and all collisions of particles with
     /// colliders, and finally the proof that no particle passed through an exact map. It allocates nothing
     /// after a thread's first batches.
     ///
-    /// A distance map pushes along its rays (docs/paper.md), and a custom map to the points that it returns;
-    /// both push a particle that is not inside back by no more than its motion towards the surface. An exact
-    /// map pushes to the thickness above the nearest point. At the end of the frame each particle is swept
-    /// from its last free position to its present one, in the frame of the moving collider. A particle that
-    /// is not free is rescued: it is moved back in front of the crossing, where the same sweep finds it free,
-    /// or to its last free position, moved along with the collider.
+    /// A distance map pushes particles along its rays (docs/paper.md), and a custom map to the points that it
+    /// returns; both push a particle that is not inside by no more than its motion towards the surface. An
+    /// exact map pushes particles to a distance equal to the thickness above the nearest point. At the end of
+    /// the frame each particle is swept from its last free position to its present one, in the frame of the
+    /// moving collider. A particle that is not free is rescued: it is moved back in front of the crossing if
+    /// the same sweep finds it free there, or else to its last free position, which moves with the collider.
     ///
     /// So no particle passes through an exact map, however fast it is and however thin the model: with one
     /// exact map, close enough to the origin for floats, lost_count stays 0. This guarantee has limits:
-    /// - It applies to particles. An edge of the model may protrude between them.
+    /// - It applies to particles. An edge of a collider may protrude between them.
     /// - Distance maps and custom maps are not swept. Nothing is guaranteed for them, nor for the exact map
     /// of an open mesh.
-    /// - Where only particles collide, pinned and attached particles stay where they are held.
-    /// - A particle that begins inside is pushed to the nearest surface point, and kept outside from then on.
+    /// - If only particles collide, pinned and attached particles stay where they are held.
+    /// - A particle that begins inside is pushed to the nearest surface point, and is kept outside from then
+    /// on.
     /// - A particle that is squeezed between several exact maps returns to its last position free of the
     /// first of them, or else of the next, and counts as lost to the others.
     /// - Far from the origin floats may be too coarse for the room around the last free position. A particle
     /// that cannot be placed there counts as lost.
     ///
-    /// @throws Error Diverged, naming the frame, in this and in each further step; as teleport(); as
-    /// ExactMap::build() if no map can be built from the vertices of a vertex cache: in that case nothing
-    /// changes, and the simulation can continue after set_collider_cache() with another cache
+    /// @throws Error Diverged, naming the frame, in this and in each further step; as teleport() does; as
+    /// ExactMap::build() does if no map can be built from the vertices of a vertex cache: in that case
+    /// nothing changes, and the simulation can continue after set_collider_cache() with a different cache
     void step();
 
     const Deformable& deformable() const;
@@ -453,7 +462,7 @@ class Simulation {
     const std::vector<Collider>& colliders() const;
     /// The given options, with the effective thickness.
     const SimulationOptions& options() const;
-    /// Number of frames computed so far.
+    /// Number of frames that have been computed.
     std::uint32_t frame() const;
     /// Speed of the fastest particle in the last frame, units per second; infinite before the first.
     double largest_speed() const;
@@ -461,7 +470,7 @@ class Simulation {
     bool at_rest() const;
     const SimulationProfile& profile() const;
     /// The residual at the end of the last frame. With Jakobsen, a large residual calls for more relaxations
-    /// or smaller steps. Computing it takes about a third of the time of a relaxation of all constraints.
+    /// or smaller steps. Computing it takes about a third as long as one relaxation of all constraints.
     Residual residual() const;
     /// XXH64 hash of the bits of all positions and velocities.
     std::uint64_t state_hash() const;
@@ -469,26 +478,27 @@ class Simulation {
     // Motion of colliders. The last call of one of these four functions applies. All have the precondition
     // collider_index < colliders().size().
 
-    /// The collider keeps these velocities.
+    /// Sets the velocities of a collider, which it keeps.
     void set_collider_velocity(std::size_t collider_index, const Vec3d& linear, const Vec3d& angular);
 
-    /// The collider moves to this pose during the next frame, at constant velocity and rotating along the
-    /// shorter arc, and then stays there until the next call, up to rounding. On its path it collides, with
-    /// friction, like any moving collider.
+    /// Makes the collider move to this pose during the next frame, at constant velocity and rotating along
+    /// the shorter arc, and then stay there, up to rounding, until the next call. On its path it collides,
+    /// with friction, like any moving collider.
     /// @throws Error InvalidOptions when the pose is not finite, or the length of its rotation differs from 1
     /// by more than 1e-4
     void set_collider_pose(std::size_t collider_index, const RigidTransform& pose);
 
-    /// The collider follows keyframes: each frame moves it to the pose of pose_at() at the frame's end, which
-    /// is options().time_step * frame() after the simulation began. It starts from its present pose, so place
-    /// it at the present pose_at() first. The simulation is not at rest before the last key. Without keys the
-    /// collider does not move.
+    /// Makes the collider follow keyframes: each frame moves it to the pose that pose_at() returns for the
+    /// end of the frame, options().time_step * (frame() + 1) seconds after the simulation began; frame() is
+    /// the number before the frame. The collider starts from its present pose, so place it at the present
+    /// pose_at() first. The simulation is not at rest before the last key. Without keys the collider does not
+    /// move.
     /// @throws Error InvalidOptions, naming the key, when a time or a pose is not finite, a rotation does
     /// not have unit length to within 1e-4, or a time is not later than the previous one
     void set_collider_keyframes(std::size_t collider_index, std::vector<PoseKey> keys);
 
-    /// Newton: the collider moves freely from its present velocities, as a solid of uniform density. Each
-    /// step solves for its pose together with the deformable, under gravity, contact and friction. Other
+    /// Newton: makes the collider move freely, from its present velocities, as a solid of uniform density.
+    /// Each step solves for its pose together with the deformable, under gravity, contact and friction. Other
     /// colliders do not stop it. A collider with attached particles is moved by the load of the previous
     /// frame instead.
     /// @param mass  kg, 1e-9 to 1e15
@@ -496,47 +506,50 @@ class Simulation {
     /// has no exact map, or that of an open mesh
     void set_collider_free(std::size_t collider_index, double mass);
 
-    /// Newton: moves colliders, the deformable or both elsewhere, at once if the teleport's time has come,
-    /// otherwise in the frame of that time. Velocities keep their magnitudes and rotate with the motion. A
-    /// collider that is teleported without the deformable carries nothing along and pushes nothing in
-    /// between. Objects that are teleported together keep their relative positions, up to rounding.
+    /// Newton: moves colliders, the deformable or both without traversing the space in between: at once if
+    /// the teleport's time has come, otherwise in the frame of that time. Velocities keep their magnitudes
+    /// and rotate with the motion. A collider that is teleported without the deformable neither carries
+    /// anything along nor pushes anything on the way. Objects that are teleported together keep their
+    /// relative positions, up to rounding.
     /// @throws Error InvalidOptions when the motion is not finite or the length of its rotation differs from
     /// 1 by more than 1e-4, a collider does not exist, the solver is Jakobsen, only one of a collider and the
-    /// particles attached to it is teleported, or, where surfaces collide, the deformable would
-    /// intersect a collider; the last error comes from step() if the time is in the future. After an error
-    /// nothing has changed, and the teleport is dropped
+    /// particles attached to it is teleported, or, if surfaces collide, the deformable would intersect a
+    /// collider; the last error comes from step() if the time is in the future. After an error nothing has
+    /// changed, and the teleport is dropped
     void teleport(const Teleport& teleport);
 
     // Deforming colliders: their vertices move, and their faces stay the same. Preconditions are
     // collider_index < colliders().size(), a collider with an exact map, and collision of surfaces. Surfaces
-    // are kept off the moving faces as off any others (docs/surfaces.md), and attached particles follow the
-    // face that was nearest to them when the collider first deformed. Each frame that deforms a collider
+    // are kept off the moving faces as off any other faces (docs/surfaces.md), and attached particles follow
+    // the face that was nearest to them when the collider first deformed. Each frame that deforms a collider
     // rebuilds its exact map on one thread, and may allocate.
 
-    /// During the next frame the vertices of a collider's mesh move to these positions along straight lines;
-    /// then they stop. The pose is independent and may move at the same time. The map is built in this call.
+    /// Makes the vertices of a collider's mesh move to these positions along straight lines during the next
+    /// frame, and then stop. The pose is independent and may move at the same time. The map is built in this
+    /// call.
     /// @param vertices_local  [vertex_count] the vertices of the mesh from which its exact map was built, in
     /// the same order
-    /// @throws Error InvalidOptions for another number of vertices, a position that is not finite, a collider
-    /// without an exact map, or where only particles collide; as ExactMap::build(). If it throws, nothing has
-    /// changed
+    /// @throws Error InvalidOptions for a different number of vertices, a position that is not finite, a
+    /// collider without an exact map, or if only particles collide; as ExactMap::build() does. If it throws,
+    /// nothing has changed
     void set_collider_vertices(std::size_t collider_index, std::span<const Vec3f> vertices_local);
 
-    /// Each frame moves the vertices to those of vertices_at() at its end. The simulation is not at rest
-    /// before the last sample.
-    /// @throws Error InvalidOptions for a cache with another number of vertices, without a sample, or with
-    /// times or positions that are not finite; and as above
+    /// Makes each frame move the vertices to those that vertices_at() returns for the end of the frame. The
+    /// simulation is not at rest before the last sample.
+    /// @throws Error InvalidOptions for a cache with a different number of vertices, without a sample, or
+    /// with times or positions that are not finite; and as set_collider_vertices() does
     void set_collider_cache(std::size_t collider_index, VertexCache cache);
 
     /// Newton: the force and torque that the deformable exerted on a collider in the last frame by contact
     /// and friction, averaged over the frame. It is 0 before the first frame, and always with Jakobsen. A
-    /// program with its own rigid bodies should let step() move them, by set_collider_free()
-    /// (examples/08_load): applying the load of the previous frame to them is stable only for small steps.
+    /// program with rigid bodies of its own should let step() move them, by set_collider_free()
+    /// (examples/08_load): a program that applies the load of the previous frame to them is stable only with
+    /// small steps.
     /// @pre collider_index < colliders().size()
     Load load_on(std::size_t collider_index) const;
 
     /// Newton: sets whether the following frames record the contacts that exert a force. Recording is off by
-    /// default, and then costs nothing. The setting is not part of a saved state.
+    /// default; it costs nothing then. The setting is not part of a saved state.
     void record_contacts(bool is_on);
     /// The contacts that were recorded in the last frame, in unspecified order; valid until the next frame.
     /// Their impulses divided by the time step sum to the opposite of load_on() of each collider, except for
@@ -545,16 +558,17 @@ class Simulation {
     std::span<const ContactPoint> contact_points() const;
 
     /// Sets the velocity of a particle, in units per second. The next frame treats it like any other
-    /// velocity: the material pulls at the particle and colliders stop it. So to drag particles, set their
+    /// velocity: the material pulls at the particle and colliders stop it. To drag particles, set their
     /// velocities towards the pointer before each frame; none of them is dragged into a model. A pinned
     /// particle does not move.
     /// @pre particle < particle_count(), and the velocity is finite
     void set_particle_velocity(std::size_t particle, const Vec3d& velocity);
 
     /// Sets the wind for one frame. Each particle takes on the share rate * time_step of the velocity of the
-    /// air relative to the surrounding faces, along their normals and averaged over them. Air slips along
-    /// faces. Call this before each frame, in which it replaces the wind of the options.
-    /// @param wind  velocity of the air, units per second; 0 is air at rest, which slows motion
+    /// air relative to the surrounding faces; only the components along their normals count, averaged over
+    /// the faces. Air slips along faces. Call this before each frame, in which it replaces the wind of the
+    /// options.
+    /// @param wind  velocity of the air, units per second; with 0 the air is at rest and slows motion
     /// @param rate  per second; higher for lighter cloth. Not negative
     /// @pre both are finite
     void blow(const Vec3d& wind, double rate);
@@ -564,24 +578,26 @@ class Simulation {
     /// Returns the state of the simulation as bytes: particles, cached data on the surfaces around them, the
     /// motion of the colliders, and counts. The same state gives the same bytes. The inputs of the simulation
     /// are not included: deformable, maps, options and vertex caches. A state takes about 100 bytes per
-    /// particle, and more with surface collision; saving takes about the time of a copy.
+    /// particle, and more with surface collision; saving takes about as long as copying these bytes.
     std::vector<std::byte> save_state() const;
     /// Writes the state to a file atomically.
     /// @throws Error Unwritable
     void save_state(const std::filesystem::path& path) const;
 
-    /// Restores a saved state: the following frames are bit-identical to those that followed the saving. The
-    /// simulation must have been made from the same deformable, colliders in their initial poses, and
-    /// options; a collider that followed a vertex cache must already follow the same one. Poses, velocities
-    /// and keyframes come from the state. A custom map is not compared. Times in profile() stay as they are.
+    /// Restores a saved state: the following frames are bit-identical to those that followed when it was
+    /// saved. The simulation must have been made from the same deformable, colliders in their initial poses,
+    /// and options; a collider that followed a vertex cache must already follow the same cache. Poses,
+    /// velocities and keyframes come from the state. A custom map is not compared. The times in profile() are
+    /// not restored.
     ///
     /// All bytes are checked before use. References and spans that this simulation returned become invalid.
-    /// @param name  name of the bytes, with which error messages begin
-    /// @throws Error WrongFormat, UnsupportedVersion or Damaged for bytes that are not a state of this
-    /// version, truncated or changed; InvalidOptions for a state of another simulation, naming the
-    /// difference. If it throws, nothing has changed
+    /// @param name  a name for the bytes, with which error messages begin
+    /// @throws Error WrongFormat, UnsupportedVersion or Damaged for bytes that are not a state, are of
+    /// another version, or are truncated or altered; InvalidOptions for a state of another simulation, naming
+    /// the difference. If it throws, nothing has changed
     void restore_state(std::span<const std::byte> bytes, const std::string& name = "the saved state");
-    /// Restores a state from a file. @throws Error as above, and Unreadable; the message begins with the path
+    /// Restores a state from a file. @throws Error as for bytes, and Unreadable; the message begins with the
+    /// path
     void restore_state(const std::filesystem::path& path);
 
   private:

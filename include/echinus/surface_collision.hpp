@@ -19,7 +19,7 @@ namespace echinus {
 
 struct SurfaceCollisionOptions {
     double friction = 0.5;      ///< Coulomb's coefficient; 0 is no friction
-    bool self_collision = true; ///< the faces do not intersect each other either
+    bool self_collision = true; ///< keep faces from intersecting each other, too
     /// Distance in units that layers keep from each other; by default the thickness. It is less near small
     /// faces.
     std::optional<double> self_thickness{};
@@ -31,12 +31,12 @@ struct SurfaceCollisionOptions {
 
 /// Keeps not only the particles of any solver (ParticleCollision), but also the faces between them, off
 /// models and off each other. Each step goes from an intersection-free state towards the solver's positions,
-/// as far as the paths are proven to be free of collisions (docs/surfaces.md). Contact and friction are those
-/// of NewtonOptions for a surface without stiffness.
+/// as far as the paths are proven to be free of collisions (docs/surfaces.md). Contact and friction work as
+/// with NewtonOptions, for a surface without stiffness.
 ///
 /// After correct() no face intersects a model or, with self_collision, another face. The exceptions, which
 /// unresolved_count() counts, are those of CollisionMode::Surfaces. Only particles collide with
-/// a collider that has no exact map. Contact forces set in at a distance equal to the thickness and grow as a
+/// a collider that has no exact map. Contact forces begin at a distance equal to the thickness and grow as a
 /// face comes closer, so the distance may be small after a hard impact. Copies are independent. Different
 /// threads may use different objects at the same time, but only one thread may use an object at a time.
 class SurfaceCollision {
@@ -44,8 +44,9 @@ class SurfaceCollision {
     /// @param positions  [n] the initial positions, at which no faces may intersect (but see untangle)
     /// @param faces      the faces between the particles; at least one
     /// @param colliders  in their initial poses; their velocities are ignored, but must be finite
-    /// @param thickness  the distance in units to keep from colliders, 0 to 1e9; at least a fiftieth of the
-    /// mean edge length. Particles that begin closer are pushed off. See docs/thickness.md
+    /// @param thickness  the distance in units to keep from colliders, 0 to 1e9; the effective value is at
+    /// least a fiftieth of the mean edge length. Particles that begin closer are pushed off. See
+    /// docs/thickness.md
     /// @throws Error InvalidOptions, naming intersecting faces; InvalidMesh
     SurfaceCollision(std::vector<Vec3f> positions, std::vector<Triangle> faces,
                      std::vector<Collider> colliders, double thickness,
@@ -64,13 +65,14 @@ class SurfaceCollision {
     void set_collider_pose(std::size_t collider_index, const RigidTransform& pose);
 
     /// Corrects the particles after a step of the solver, and moves the colliders. The step starts from
-    /// positions(), at which the last one ended.
+    /// positions(), at which the previous step ended.
     ///
     /// A particle counts as corrected if it ends farther than a thousandth of the thickness from the solver's
     /// position. For other particles the array keeps the solver's position, so only positions() is exactly
-    /// free of intersections. The velocity of a corrected particle changes accordingly, and after an impact
-    /// it has no component into the surface. A particle whose position is not finite, or more than 1e12 units
-    /// from the previous one, keeps its previous position as an obstacle for others, and is not corrected.
+    /// free of intersections. The velocity of a corrected particle changes by the correction divided by the
+    /// duration of the step, and after an impact it has no component into the surface. A particle whose
+    /// position is not finite, or more than 1e12 units from the previous one, keeps its previous position as
+    /// an obstacle for others, and is not corrected.
     ///
     /// The cost is that of a frame of a simulation whose surfaces collide (docs/surfaces_measured.md). The
     /// function allocates when its arrays of pairs grow.
@@ -78,7 +80,7 @@ class SurfaceCollision {
     /// @param velocities  [n] in and out, units per second; or empty
     /// @param seconds     the duration of the step; positive
     /// @return the indices of particles whose positions were corrected, ascending; valid until the next call
-    /// @throws Error InvalidOptions for arrays of other sizes and a duration that is not positive, without
+    /// @throws Error InvalidOptions for arrays of the wrong size or a duration that is not positive, without
     /// changing anything; Diverged if a collider leaves all bounds, after which the object cannot be used any
     /// more
     std::span<const std::uint32_t> correct(std::span<Vec3f> positions, std::span<Vec3f> velocities,
@@ -87,7 +89,7 @@ class SurfaceCollision {
     /// [n] The present positions of the particles, which are free of intersections.
     const std::vector<Vec3f>& positions() const;
     const std::vector<Collider>& colliders() const;
-    /// Unresolved pairs of elements, for which no free space was proven, summed over all steps:
+    /// The number of unresolved pairs of elements, for which no free space was proven, summed over all steps:
     /// SimulationProfile::unresolved_count.
     std::uint64_t unresolved_count() const;
 

@@ -17,10 +17,10 @@ ECHINUS_EXPORT_BEGIN
 /// one, intersection tests, and sweeps. They do not depend on an inside, so open meshes work as well as
 /// closed ones.
 ///
-/// The surface is that of the map: the faces of the mesh with their vertices on the map's lattice, at most R
-/// / 2^20 from those of the mesh along each axis, without faces that have no area there. Everything is in the
-/// map's frame; faces are numbered as in the mesh. A triangle with two equal corners is an edge, and one with
-/// three equal corners a point. A triangle with a corner that is not finite is far from all faces.
+/// The surface is that of the map: the faces of the mesh with their vertices snapped to the map's lattice,
+/// which moves them by at most R / 2^20 along each axis, without faces that have no area there. Everything is
+/// in the map's frame; faces are numbered as in the mesh. A triangle with two equal corners is an edge, and
+/// one with three equal corners a point. A triangle with a corner that is not finite is far from all faces.
 ///
 /// Any number of threads may query one map. The answers are the same on every machine and for any number of
 /// threads.
@@ -38,9 +38,9 @@ bool intersects(const ExactMapView& map, const TrianglePoints& triangle_local) n
 
 /// The distance of a triangle from the surface.
 struct Clearance {
-    /// A lower bound of the distance between triangle and surface, including rounding. It is usually less
-    /// only by rounding: by 1e-6 of the sum of the distance and the coordinates' extent. It is 0 if they
-    /// intersect.
+    /// A lower bound of the distance between triangle and surface, in spite of rounding. It usually falls
+    /// short by rounding errors only: by 1e-6 of the sum of the distance and the coordinates' extent. It is 0
+    /// if they intersect.
     float distance = std::numeric_limits<float>::infinity();
     std::uint32_t face = kNoIndex; ///< the face at this distance; kNoIndex if none is within `farthest`
 
@@ -68,26 +68,27 @@ struct TriangleSweepHit {
 /// with two equal corners.
 ///
 /// The query uses conservative advancement, until the triangle is within R / 2^17 of the surface or, if that
-/// is more, within 10^-13 of the distance of the path's ends from the centre. So if `fraction` is less than
-/// 1, the triangle is that close to the surface there, except for the rounding of `fraction` itself. A path
-/// that begins or ends farther than 10^11 R from the centre is ignored: the triangle meets nothing. The query
-/// does not allocate.
+/// is more, within 10^-13 times the distance of the path's ends from the centre. So if `fraction` is less
+/// than 1, the triangle is that close to the surface at this point of the path, except for the rounding of
+/// `fraction` itself. A path that begins or ends farther than 10^11 R from the centre is ignored: the
+/// triangle meets nothing. The query does not allocate.
 ///
 /// The cost is up to 16 clearances. A triangle that has not arrived by then, because it slides along the
-/// surface or leaves it slowly, is then advanced separately for each face within its box, until the first is
-/// met. This takes a few distances of two triangles per face, and at most 36 + 2 log2(L / R) if its corners
-/// move alike; L is the length of the path. The path of a triangle that turns closely around an edge is
-/// divided; this may take about ten thousand distances, and more if its corners are far away.
+/// surface or leaves it slowly, is advanced separately for each face within its box, until the first face is
+/// met. This takes a few computations of the distance of two triangles per face, and at most 36 + 2 log2(L /
+/// R) if all corners move alike; L is the length of the path. The path of a triangle that turns closely
+/// around an edge is divided; this may take about ten thousand distance computations, and more if its corners
+/// are far away.
 TriangleSweepHit sweep(const ExactMapView& map, const TrianglePoints& from_local,
                        const TrianglePoints& to_local) noexcept;
 
-// The same for many triangles. All arrays have the same size (@pre), and the output must not overlap the
-// triangles. thread_count, 0 for all cores, is used for 32 768 triangles or more.
+// The same queries for many triangles. All arrays have the same size (@pre), and the output must not overlap
+// the triangles. thread_count, 0 for all cores, is used for 32 768 triangles or more.
 
 /// @param intersecting  [n] out: 0 or 1
 void intersects_batch(const ExactMapView& map, StridedSpan<const TrianglePoints> triangles_local,
                       std::span<std::uint8_t> intersecting, unsigned thread_count = 1) noexcept;
-/// @param farthest  as for clearance()
+/// @param farthest  as in clearance()
 void clearance_batch(const ExactMapView& map, StridedSpan<const TrianglePoints> triangles_local,
                      float farthest, std::span<Clearance> clearances, unsigned thread_count = 1) noexcept;
 void sweep_batch(const ExactMapView& map, StridedSpan<const TrianglePoints> from_local,
@@ -104,8 +105,8 @@ struct FaceLists {
     }
 };
 
-/// Finds the faces within reach of each triangle: all faces whose distance is at most `reach`, and hardly any
-/// that is farther by more than rounding (see Clearance).
+/// Finds the faces within reach of each triangle: all faces whose distance is at most `reach`, and, except
+/// for rounding (see Clearance), hardly any that are farther away.
 /// @param vertices_local  [vertex_count]
 /// @param triangles       [n] indices of vertices
 /// @param reach           not negative; 0: only touching faces. Limited to 10^12 R

@@ -17,8 +17,8 @@ ECHINUS_EXPORT_BEGIN
 /// Solids divided into tetrahedra.
 namespace echinus {
 
-/// Four vertex indices a, b, c, d. It is *positive* if a, b, c are counter-clockwise seen from d, so that
-/// the volume (b - a) x (c - a) . (d - a) / 6 is positive.
+/// Four vertex indices a, b, c, d. A tetrahedron is *positive* if a, b, c are counter-clockwise seen from d,
+/// so that the volume (b - a) x (c - a) . (d - a) / 6 is positive.
 using Tetrahedron = std::array<std::uint32_t, 4>;
 
 /// A body divided into tetrahedra that share vertices. It has no invariants; require_valid_tetrahedra() tells
@@ -29,7 +29,7 @@ struct TetrahedralMesh {
     Vec3d origin{};                      ///< as TriangleMesh::origin
 };
 
-/// Makes a body of positions in double by rounding them to float, relative to an origin if float is too
+/// Makes a body from positions in double by rounding them to float, relative to an origin if float is too
 /// coarse for them.
 /// @param positions  [vertex_count]
 TetrahedralMesh local_body(std::span<const Vec3d> positions, std::vector<Tetrahedron> tetrahedra);
@@ -48,25 +48,25 @@ void require_valid_tetrahedra(const TetrahedralMesh& mesh);
 /// @throws Error InvalidMesh when an index is out of range, or two tetrahedra lie on the same side of a face
 TriangleMesh boundary(const TetrahedralMesh& mesh);
 
-/// Makes a box around the origin, of cuboids that are divided into five tetrahedra each, mirrored from cuboid
-/// to cuboid. Vertex (i, j, k), counted along x, y and z, has the index (k * (segments[1] + 1) + j) *
-/// (segments[0] + 1) + i.
-/// @param segments  cuboids along x, y and z, 1 to 512 each
+/// Makes a box around the origin from cuboids, each divided into five tetrahedra; the division is mirrored
+/// from cuboid to cuboid. Vertex (i, j, k), counted along x, y and z, has the index (k * (segments[1] + 1) +
+/// j) * (segments[0] + 1) + i.
+/// @param segments  the number of cuboids along x, y and z, 1 to 512 each
 /// @throws Error InvalidOptions
 TetrahedralMesh make_solid_box(const Vec3d& size, const std::array<std::uint32_t, 3>& segments);
 
 // ---- From a closed surface to tetrahedra ----
 
 struct TetrahedralizeOptions {
-    /// The edge of the lattice's cubes in the model's unit, which is the length of the longest interior
-    /// edges; at the boundary some are 1.5 times as long. Thinner parts are lost or torn. Either this or
-    /// `count` is positive, and the other 0.
+    /// The edge length of the lattice's cubes in the model's unit, which is the length of the longest
+    /// interior edges; at the boundary some edges are 1.5 times as long. Parts thinner than this are lost or
+    /// torn. Either this or `count` is positive, and the other is 0.
     double size = 0;
-    /// The target number of tetrahedra. The size is found by trial, to within 5 % of the number where the
-    /// model allows it; each trial takes as long as a call with a size.
+    /// The target number of tetrahedra. The size is found by trial, so that the number is met to within 5 %
+    /// if the model allows it; each trial takes as long as a call with a size.
     std::size_t count = 0;
-    /// The largest number of tetrahedra; more are rejected. A million takes 150 MB while they are made, and
-    /// the lattice in the model's box takes 1.2 bytes per vertex, of which more than kMaxLatticeVertices are
+    /// The largest number of tetrahedra; more are rejected. Making a million of them takes 150 MB, and the
+    /// lattice in the model's box takes 1.2 bytes per vertex; a lattice of more than kMaxLatticeVertices is
     /// rejected, too.
     std::size_t most_tetrahedra = 10'000'000;
     unsigned thread_count = 0; ///< 0: all cores. The result does not depend on it.
@@ -80,7 +80,7 @@ struct TetrahedralizeOptions {
 /// The result of tetrahedralize().
 struct Tetrahedralization {
     TetrahedralMesh mesh; ///< valid; every vertex is used
-    double size = 0;      ///< of the lattice
+    double size = 0;      ///< the size with which the lattice was made
     /// Number of tetrahedra left out because parts of the body would have met in only an edge or a vertex.
     std::size_t removed_tetrahedra = 0;
 };
@@ -88,18 +88,18 @@ struct Tetrahedralization {
 /// Fills the inside of an exact map with tetrahedra, by isosurface stuffing on a uniform lattice
 /// (Labelle and Shewchuk 2007, "Isosurface Stuffing: Fast Tetrahedral Meshes with Good Dihedral Angles").
 ///
-/// All tetrahedra are positive. Their dihedral angles depend on which vertices of the lattice are inside
-/// and where its edges are cut, not on the model; the extremes over all cases are 9.3 and 161.7 degrees
-/// (docs/tetrahedra.md). The boundary is closed, manifold and does not intersect itself. Its vertices lie
-/// on the model's surface, up to rounding and two lattice steps of the map, except for those where
+/// All tetrahedra are positive. Their dihedral angles depend only on which vertices of the lattice are inside
+/// and where its edges are cut; the extremes over all cases, and so for every model, are 9.3 and 161.7
+/// degrees (docs/tetrahedra.md). The boundary is closed, manifold and does not intersect itself. Its vertices
+/// lie on the model's surface, up to rounding and two lattice steps of the map, except for those where
 /// tetrahedra were removed. Between the vertices it may deviate by about half a size where the model has
-/// edges or features finer than the lattice; parts that are closer together than a size may merge. The
-/// volume is therefore usually less than the model's, by a share that decreases with the square of the
-/// size once all parts are thicker than that (docs/tetrahedra.md): compare TetrahedralReport::volume.
+/// edges or features finer than the lattice; parts that are closer together than a size may merge. The volume
+/// is therefore usually less than the model's, by a share that decreases with the square of the size once all
+/// parts are thicker than a size (docs/tetrahedra.md): compare TetrahedralReport::volume.
 ///
 /// For an open model the generalised winding number decides what is inside (exact_map.hpp). The vertices are
-/// numbered along the model's longest axis. A million tetrahedra take about 1.5 s on one core, including all
-/// trials for a count.
+/// numbered along the model's longest axis. A million tetrahedra take about 1.5 s on one core, also with a
+/// count, including all trials.
 /// @throws Error InvalidOptions when not exactly one of size and count is positive, a size is not finite,
 /// is smaller than 1/4096 of the model's largest coordinate, where float is too coarse, or would take more
 /// tetrahedra or lattice vertices than allowed; InvalidMesh when no tetrahedron of that size fits into the
@@ -111,10 +111,10 @@ Tetrahedralization tetrahedralize(const ExactMapView& model, const Tetrahedraliz
 struct TetrahedralReport {
     std::size_t tetrahedron_count = 0;
     std::size_t vertex_count = 0; ///< number of used vertices
-    double volume = 0;            ///< sum over all tetrahedra, in the cube of the unit
-    double least_volume = 0;      ///< of one tetrahedron
+    double volume = 0;            ///< the total volume, in cubic units
+    double least_volume = 0;      ///< the volume of the smallest tetrahedron
     double shortest_edge = 0, longest_edge = 0;
-    double least_angle_deg = 0, greatest_angle_deg = 0; ///< between two faces of a tetrahedron
+    double least_angle_deg = 0, greatest_angle_deg = 0; ///< angles between two faces of a tetrahedron
     MeshReport boundary;                                ///< inspect() of boundary()
 };
 
@@ -129,7 +129,7 @@ struct BoundaryDistance {
     double mean_to_boundary = 0, greatest_to_boundary = 0; ///< from the model's surface to the boundary
 };
 
-/// Measures these distances.
+/// Measures the distances of BoundaryDistance.
 /// @param thread_count  0: all cores; the result does not depend on it
 /// @throws Error InvalidMesh as require_valid_tetrahedra() does
 BoundaryDistance measure_distance(const TetrahedralMesh& mesh, const ExactMapView& model,
@@ -146,18 +146,18 @@ struct EmbeddedPoint {
 };
 using Embedding = std::vector<EmbeddedPoint>;
 
-/// Finds the tetrahedron that contains each point, or else the nearest one, and the point's weights there.
-/// Among several, the one with the smallest index is chosen. The time is O(log n) per point in a body of
-/// well-shaped tetrahedra.
+/// Finds for each point the tetrahedron that contains it, or else the nearest one, and the point's weights
+/// there. If there are several, the one with the smallest index is chosen. The time is O(log n) per point in
+/// a body of well-shaped tetrahedra.
 /// @param points  [n] finite
 /// @returns [n]
 /// @throws Error InvalidMesh as require_valid_tetrahedra() does, or when a point is not finite
 Embedding embed(const TetrahedralMesh& mesh, StridedSpan<const Vec3f> points, unsigned thread_count = 0);
 
 /// Computes the positions of the points after the body's vertices have moved. An affine motion of the body
-/// moves all points by the same motion, up to rounding: since weights are floats, the error of a point whose
-/// distance from its tetrahedron is k times the tetrahedron's height is k times as large. The function does
-/// not allocate.
+/// moves all points by the same motion, up to rounding. Since weights are floats, the rounding error of a
+/// point is k times as large if its distance from its tetrahedron is k times the tetrahedron's height. The
+/// function does not allocate.
 /// @param positions  [vertex_count] the moved vertices of the body
 /// @param points     [embedding.size()] out. Must not overlap positions
 /// @pre the embedding was made with a body of the same number of vertices; points.size() == embedding.size()
@@ -172,7 +172,7 @@ struct ElasticTetrahedron {
     /// The gradients of the barycentric coordinates of b, c and d at rest, per length: the rows of the
     /// inverse of the matrix with the columns b - a, c - a and d - a.
     std::array<Vec3f, 3> gradients;
-    float volume;     ///< at rest; positive
+    float volume;     ///< the volume at rest; positive
     float mu, lambda; ///< the Lame parameters: mass / (length s^2); mu positive, lambda not negative
     /// Viscosity divided by mu, seconds: a strain rate adds the stress of the strain that it would reach in
     /// this time.

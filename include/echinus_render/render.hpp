@@ -37,8 +37,8 @@ struct Colour {
 };
 
 /// The colours of the project's figures. The layers can be distinguished with every common kind of colour
-/// blindness: the scheme "muted" of Paul Tol, "Colour Schemes", SRON/EPS/TN/09-002 (2021), in an order in
-/// which neighbours differ most.
+/// blindness: the scheme "muted" of Paul Tol, "Colour Schemes", SRON/EPS/TN/09-002 (2021), ordered so that
+/// neighbours differ most.
 namespace palette {
 inline constexpr Colour kClay = Colour::from_hex(0xBDB5AA);      ///< the model: warm grey
 inline constexpr Colour kCloth = Colour::from_hex(0xB4584E);     ///< the front of a cloth
@@ -59,14 +59,16 @@ inline constexpr Colour kScale[] = {
 };
 } // namespace palette
 
-/// A mesh and its paint. Matte; both sides are lit.
+/// A mesh and its colours. The material is matte, and both sides are lit.
 struct RenderedObject {
     TriangleMesh mesh; ///< world frame, any unit
     Colour colour = palette::kClay;
-    std::vector<Colour> face_colours;  ///< [face_count] in place of `colour`, or empty
-    std::optional<Colour> back_colour; ///< of the side on which faces are clockwise; by default as the front
+    std::vector<Colour> face_colours; ///< [face_count] in place of `colour`, or empty
+    std::optional<Colour>
+        back_colour; ///< of the side on which faces are clockwise; by default that of the front
     std::vector<std::uint32_t> marked_faces; ///< drawn in palette::kMark on both sides
-    /// Edges with a smaller angle than this look smooth, the others sharp. With 0 every face looks flat.
+    /// Edges look smooth if the angle between their faces is smaller than this, and sharp otherwise. With 0
+    /// every face looks flat.
     double crease_angle_deg = 40;
     double wire_width_px = 0; ///< width of the lines drawn along all edges; 0 draws none
 };
@@ -75,8 +77,8 @@ struct RenderedObject {
 /// The direction from which a picture is taken.
 struct View {
     Vec3d up = {0, 0, 1}; ///< any length except 0
-    /// Direction of the camera, counter-clockwise about `up`. 0 is towards +x for up = z, and cyclically
-    /// towards +z for up = y and towards +y for up = x.
+    /// Direction towards the camera, counter-clockwise about `up`. 0 is +x for up = z and, cyclically, +z for
+    /// up = y and +y for up = x.
     double azimuth_deg = 35;
     double elevation_deg = 20;      ///< height above the horizon, in [-89, 89]
     double vertical_field_deg = 24; ///< in [1, 120]; smaller is more like a parallel projection
@@ -87,14 +89,14 @@ struct View {
 /// A pinhole camera and the floor below the objects, in the objects' frame.
 struct Camera {
     Vec3d position;
-    Vec3d right, up, forward; ///< orthonormal; forward goes into the picture
+    Vec3d right, up, forward; ///< orthonormal; forward points into the picture
     double tan_half_height = 0;
     Vec3d world_up;          ///< unit
-    double floor_height = 0; ///< the floor is where dot(world_up, point) has this value
+    double floor_height = 0; ///< the value of dot(world_up, point) on the floor
 };
 
-/// The camera that shows all points as large as the margin allows, on a floor at the height of the lowest
-/// point. Using one camera for several pictures gives them a common scale.
+/// The camera that shows all points as large as the margin allows, above a floor at the height of the lowest
+/// point. Pictures taken with the same camera have a common scale.
 /// @param aspect  width over height of the picture
 /// @throws Error InvalidOptions for a field of `view` or an aspect out of range, InvalidMesh when there is
 /// no point, a point is not finite, or all points coincide
@@ -119,17 +121,18 @@ struct RenderOptions {
 
     std::uint32_t width = 1000; ///< pixels, 1 to kMaxSide; width * height at most kMaxPixelCount
     std::uint32_t height = 750; ///< pixels, the same
-    std::uint32_t samples = 32; ///< rays per pixel, 1 to kMaxSampleCount. The time is proportional to it, and
-                                ///< noise falls with its square root. Powers of two are distributed best.
-    unsigned thread_count = 0;  ///< 0: all cores. The picture does not depend on it.
+    std::uint32_t samples =
+        32; ///< rays per pixel, 1 to kMaxSampleCount. The time is proportional to it, and the noise is
+            ///< inversely proportional to its square root. Powers of two are distributed best.
+    unsigned thread_count = 0; ///< 0: all cores. The picture does not depend on it.
     /// Called with the completed share, ascending to 1, from one thread at a time. It may throw to stop.
     std::function<void(double share)> progress;
 };
 
 /// Renders objects in soft light on a pale, endless floor. On one machine the picture is the same, byte for
-/// byte, in every run and for any number of threads; another processor may round differently, since Embree
-/// chooses other instructions. The cost is three rays per sample and non-empty pixel.
-/// @throws Error InvalidOptions for options out of range, face_colours of a wrong size or marked faces that
+/// byte, in every run and for any number of threads; a different processor may round differently, since
+/// Embree chooses its instructions accordingly. The cost is three rays per sample of each non-empty pixel.
+/// @throws Error InvalidOptions for options out of range, face_colours of the wrong size or marked faces that
 /// do not exist, InvalidMesh as inspect() does, or when an object has no face with an area
 Image render(std::span<const RenderedObject> objects, const Camera& camera,
              const RenderOptions& options = {});
@@ -147,7 +150,8 @@ void write_png(const std::filesystem::path& path, const Image& image);
 /// The position of a text relative to its anchor.
 enum class TextAlign : std::uint8_t { Left, Centre, Right };
 
-/// Draws one line of text in a built-in stroke font with printable ASCII; any other character becomes a box.
+/// Draws one line of text in a built-in stroke font, which contains printable ASCII; any other character
+/// becomes a box.
 /// @param x, y      anchor in pixels: the left end, middle or right end of the baseline
 /// @param height_px height of a capital letter
 void draw_text(Image& image, double x, double y, std::string_view text, double height_px,
@@ -168,8 +172,8 @@ Image arrange(std::span<const Image> pictures, std::uint32_t column_count);
 Image draw_map_figure(const TriangleMesh& model, const DistanceMapView& map, const View& view,
                       const RenderOptions& options = {});
 
-/// Draws the model, and next to it the mesh of an exact map: each face is coloured by the longest list that
-/// contains it, the number of faces that a query near it may have to test.
+/// Draws the model, and next to it the mesh of an exact map, each of whose faces is coloured by the length of
+/// the longest list that contains it: the number of faces that a query near it may have to test.
 /// @param options  width is that of the whole figure
 /// @throws Error as camera_for() and render()
 Image draw_map_figure(const TriangleMesh& model, const ExactMapView& map, const View& view,

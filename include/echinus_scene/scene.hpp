@@ -21,8 +21,8 @@
 ECHINUS_EXPORT_BEGIN
 
 /// Scenes: the set-up of a simulation as JSON (docs/scenes.md documents every key). They belong to the
-/// library echinus::scene, which needs nlohmann-json. It reads no meshes: the caller reads the model, with
-/// echinus::io or otherwise, and passes its map, and likewise the mesh of a cloth.
+/// library echinus::scene, which needs nlohmann-json. It reads no meshes: the caller reads models, with
+/// echinus::io or otherwise, and passes their maps, and likewise the mesh of a cloth.
 namespace echinus {
 
 struct ModelFile {
@@ -68,7 +68,7 @@ struct SceneHandle {
 /// The initial velocity of all particles that are not pinned, in the world.
 struct SceneVelocity {
     Vec3d linear;  ///< units per second
-    Vec3d angular; ///< radians per second, about their centre of mass
+    Vec3d angular; ///< radians per second, about the particles' centre of mass
 };
 
 /// A cloth of any shape: the arguments of make_cloth() for a mesh, by name.
@@ -90,22 +90,22 @@ struct SceneBody {
     std::vector<SceneAttachment> attachments;
     std::vector<SceneHandle> handles;
     SceneVelocity velocity;
-    std::vector<std::uint32_t> ignores; ///< indices of the colliders that it passes through
+    std::vector<std::uint32_t> ignores; ///< indices of the colliders that the body passes through
 };
 
-/// The meshes of a scene's cloth and bodies that come from files, as read by the caller; the others are left
+/// The meshes of a scene's cloth and bodies that come from files, as read by the caller; all others are left
 /// empty.
 struct ClothMeshes {
     TriangleMesh mesh, rest_mesh;
     std::vector<std::array<std::uint32_t, 2>> threads{}; ///< of `mesh`: see read_mesh_and_edges()
-    std::vector<TetrahedralMesh> bodies{};               ///< by body; surfaces are already filled
+    std::vector<TetrahedralMesh> bodies{};               ///< one for each body; surfaces are already filled
 };
 
 /// The vertex cache of a deforming model: a file or a folder for read_vertex_cache().
 struct CacheFile {
     std::string name; ///< as written in the scene; see find_model()
     double frames_per_second = 24;
-    std::string animation = {}; ///< its name; empty if the file has one animation or none
+    std::string animation = {}; ///< the animation's name; empty if the file has one animation or none
 };
 
 /// A model in the world, and its motion.
@@ -125,18 +125,18 @@ struct SceneCollider {
 /// generators check whether a shape is possible.
 struct Scene {
     std::vector<SceneCollider> colliders; ///< at least one
-    MapOptions map;                       ///< of each collider
+    MapOptions map;                       ///< the options of every collider's map
     bool has_cloth = true;
     ClothOptions cloth;
     std::optional<MeshCloth> mesh_cloth;            ///< in place of `cloth`
     std::vector<SceneAttachment> cloth_attachments; ///< in a sheet: row * column_count + column
     std::vector<SceneHandle> cloth_handles;         ///< likewise
     SceneVelocity cloth_velocity;
-    std::vector<std::uint32_t> cloth_ignores; ///< indices of the colliders that it passes through
+    std::vector<std::uint32_t> cloth_ignores; ///< indices of the colliders that the cloth passes through
     std::vector<SceneBody> bodies;            ///< soft bodies, after the cloth
     std::vector<Teleport> teleports;
     SimulationOptions simulation;
-    std::uint32_t frame_limit = 3000; ///< the simulation ends after this many frames at the latest
+    std::uint32_t frame_limit = 3000; ///< the simulation ends after at most this number of frames
     /// Warnings for the user about keys of earlier versions, or of another solver, that have no effect, and
     /// about their replacements.
     std::vector<std::string> warnings;
@@ -174,24 +174,24 @@ AnyMap build_map(const TriangleMesh& mesh, const MapOptions& options, unsigned t
 /// The collider in its initial pose, with a map of its model.
 Collider make_collider(const SceneCollider& collider, const ColliderMap& map);
 
-/// Builds the scene's map of a model by build_map(). With a distance map and surface collision, the exact map
-/// of the same mesh is added.
+/// Builds the scene's map of a model with build_map(). If the map is a distance map and surfaces collide, the
+/// exact map of the same mesh is added.
 /// @throws Error as build_map()
 ColliderMap make_collider_map(const Scene& scene, const TriangleMesh& mesh, unsigned thread_count = 0);
 
 /// Fills a closed surface with tetrahedra of the body's element size.
-/// @throws Error InvalidMesh for an open surface, InvalidOptions; as tetrahedralize()
+/// @throws Error InvalidMesh for an open surface; and as tetrahedralize() does
 TetrahedralMesh fill_body(const SceneBody& body, const TriangleMesh& surface);
 
 /// Makes the scene's cloth in its initial pose, at rest.
 /// @param meshes  the meshes of a cloth from files
 /// @throws Error as the two functions make_cloth() do; for a mesh the message begins with its name.
-/// InvalidOptions if a mesh from a file is missing, or a box contains no vertex; InvalidMesh if the rest mesh
-/// has other faces
+/// InvalidOptions if a mesh from a file is missing, or a box contains no vertex; InvalidMesh if the faces of
+/// the rest mesh differ
 Deformable make_cloth(const Scene& scene, const ClothMeshes& meshes = {});
 
-/// Fills a generated shape with tetrahedra: a box exactly, by cuboids of about this size; other shapes by
-/// tetrahedralize().
+/// Fills a generated shape with tetrahedra: a box exactly, with cuboids of about the size `element`; other
+/// shapes by tetrahedralize().
 /// @throws Error InvalidOptions as the generators and tetrahedralize() do
 TetrahedralMesh make_solid(const SceneModel& shape, double element);
 
@@ -206,7 +206,7 @@ Deformable make_deformable(const Scene& scene, const ClothMeshes& meshes = {});
 /// @param caches  [collider_count] the caches of the colliders that have one in the scene, as read by the
 /// caller; may be empty if there are none
 /// @throws Error InvalidOptions, also when the number of maps differs from that of colliders, or a cache is
-/// missing; and as make_deformable()
+/// missing; and as make_deformable() does
 Simulation make_simulation(const Scene& scene, std::span<const ColliderMap> maps,
                            const ClothMeshes& meshes = {}, std::span<const VertexCache> caches = {});
 /// Makes the simulation of a scene with one collider.
