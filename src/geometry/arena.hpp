@@ -30,10 +30,10 @@ class Arena {
     operator std::span<const T>() const { return {data(), size_}; }
     operator std::span<T>() { return {data(), size_}; }
 
-    /// Keeps the memory.
+    /// Empties the array but keeps its memory.
     void clear() { size_ = 0; }
 
-    /// Sets the length. The previous contents are lost, the new ones are arbitrary.
+    /// Sets the size. The previous contents are lost, and the new ones are arbitrary.
     void reset(std::size_t size) {
         if (size > capacity_) {
             data_.reset();
@@ -43,13 +43,14 @@ class Arena {
         size_ = size;
     }
 
-    /// Memory for the next `count` values, which join the array with extend().
+    /// Memory for the next `count` values, which extend() then adds to the array.
     T* room_for(std::size_t count) {
         if (size_ + count > capacity_) grow(size_ + count);
         return data() + size_;
     }
 
-    /// @pre `count` values were written to the memory from room_for(), which was asked for at least as many
+    /// @pre `count` values were written to the memory from room_for(), which was called with at least this
+    /// count
     void extend(std::size_t count) { size_ += count; }
 
     void push_back(const T& value) {
@@ -60,7 +61,7 @@ class Arena {
   private:
     using Memory = std::unique_ptr<T[]>;
 
-    /// std::make_unique_for_overwrite, which the libc++ of Emscripten 3.1 lacks.
+    /// std::make_unique_for_overwrite, which is missing from the libc++ of Emscripten 3.1.
     static Memory unwritten(std::size_t size) { return Memory(new T[size]); }
 
     void grow(std::size_t least) {
@@ -75,8 +76,8 @@ class Arena {
     std::size_t size_ = 0, capacity_ = 0;
 };
 
-/// An array whose elements are not initialised: a kernel's memory, of which a small call uses little, and
-/// in which default values would be written for nothing.
+/// An array whose elements are not initialised, for a kernel's memory: a small call uses little of it, so
+/// that default values would mostly be written in vain.
 template <typename T, std::size_t kSize>
 class RawArray {
     static_assert(std::is_trivially_copyable_v<T> && std::is_trivially_destructible_v<T>);

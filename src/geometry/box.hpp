@@ -7,8 +7,8 @@
 
 namespace echinus {
 
-/// The smallest closed box along the axes around what was added. Empty at first: low is infinite and high is
-/// minus infinite. NaN must not be added.
+/// The smallest closed axis-aligned box around everything that was added. At first it is empty: low is
+/// infinity and high is minus infinity. NaN must not be added.
 template <typename T>
 struct AlignedBox {
     static constexpr T kInfinity = std::numeric_limits<T>::infinity();
@@ -26,9 +26,9 @@ struct AlignedBox {
                 std::max(high.z, other.high.z)};
     }
 
-    /// Touching counts.
+    /// Boxes that touch overlap, too.
     bool overlaps(const AlignedBox& other) const {
-        // Without branches: which comparison fails cannot be predicted.
+        // Written without branches, since it is unpredictable which comparison fails.
         return (low.x <= other.high.x) & (low.y <= other.high.y) & (low.z <= other.high.z) &
                (other.low.x <= high.x) & (other.low.y <= high.y) & (other.low.z <= high.z);
     }
@@ -37,10 +37,10 @@ struct AlignedBox {
                high.x >= other.high.x && high.y >= other.high.y && high.z >= other.high.z;
     }
 
-    /// The lengths of its sides, minus infinity for an empty box. In double: the difference of two floats may
-    /// exceed all floats.
+    /// The lengths of its sides; minus infinity for an empty box. In double, since the difference of two
+    /// floats may exceed the range of float.
     Vec3d sides() const { return Vec3d(high) - Vec3d(low); }
-    /// The axis along which it is longest; of several, the first.
+    /// The axis along which the box is longest; of several, the first.
     T Vec3<T>::*longest_axis() const {
         const Vec3d side = sides();
         if (side.x >= side.y && side.x >= side.z) return &Vec3<T>::x;
@@ -49,13 +49,13 @@ struct AlignedBox {
     /// The largest absolute coordinate of its corners. @pre not empty
     T largest_coordinate() const { return std::max({-low.x, -low.y, -low.z, high.x, high.y, high.z}); }
 
-    /// From a point to the nearest point of the box: 0 inside, infinite from an empty box.
+    /// The distance from a point to the nearest point of the box: 0 inside, infinite for an empty box.
     double distance(const Vec3d& point) const {
         const Vec3d below = Vec3d(low) - point, above = point - Vec3d(high);
         return length(Vec3d{std::max({below.x, above.x, 0.0}), std::max({below.y, above.y, 0.0}),
                             std::max({below.z, above.z, 0.0})});
     }
-    /// From a point of the box to the farthest one.
+    /// The distance from a point in the box to the farthest point of the box.
     double farthest_distance(const Vec3d& point) const {
         const Vec3d below = point - Vec3d(low), above = Vec3d(high) - point;
         return length(

@@ -11,13 +11,14 @@
 namespace echinus {
 
 /// A tree of boxes over items, such as the faces of a mesh or the tetrahedra of a body. A node is split when
-/// a search first reaches it: two surfaces that meet in a few places pay only for these.
+/// a search first reaches it, so that two surfaces that meet in a few places require only the nodes there.
 class BoxTree {
   public:
     using Box = AlignedBox<float>;
     static constexpr std::size_t kLeafSize = 4;
 
-    /// Leaves begin to end of the tree's own order. Has no children where there are at most kLeafSize.
+    /// A node holds the leaves [begin, end) in the tree's own order. It has no children if these are at most
+    /// kLeafSize.
     struct Node {
         Box box;
         std::uint32_t begin, end;
@@ -33,18 +34,18 @@ class BoxTree {
         std::uint32_t item;
     };
 
-    /// @param boxes  of the items, in their order; at least one, finite
+    /// @param boxes  the boxes of the items, in their order; at least one, all finite
     explicit BoxTree(const std::vector<Box>& boxes);
 
     /// References stay valid when other nodes are split.
     const Node& node(std::uint32_t index) const { return nodes_[index]; }
     const Leaf& leaf(std::uint32_t index) const { return leaves_[index]; }
 
-    /// Gives a node its children, unless it has them. @pre not a leaf
+    /// Creates the children of a node, unless it has them. @pre the node is not a leaf
     void split(std::uint32_t index) {
         if (nodes_[index].left == 0) make_children(index);
     }
-    /// For searches that must not change the tree.
+    /// Splits all nodes, for searches that must not change the tree.
     void split_all();
 
   private:
@@ -59,7 +60,8 @@ class BoxTree {
 inline BoxTree::BoxTree(const std::vector<Box>& boxes) {
     leaves_.reserve(boxes.size());
     for (std::uint32_t item = 0; item < boxes.size(); ++item) leaves_.push_back({boxes[item], item});
-    nodes_.reserve(leaves_.size()); // for all that there may be: a node's child has at least two leaves
+    nodes_.reserve(
+        leaves_.size()); // the most nodes that there may be: a node's child has at least two leaves
     add_node(0, kept_as<std::uint32_t>(leaves_.size()));
 }
 
@@ -82,8 +84,8 @@ inline void BoxTree::add_node(std::uint32_t begin, std::uint32_t end) {
     nodes_.push_back({box, begin, end});
 }
 
-/// Divides the leaves of a node by their centres along the longest side: at its middle, in one pass, or where
-/// that leaves a part with less than a quarter of them, at the median.
+/// Divides the leaves of a node by their centres along the longest side: at the middle of that side, in one
+/// pass, or, if a part would then have less than a quarter of the leaves, at the median.
 inline std::uint32_t BoxTree::middle_of(const Node& node) {
     const auto axis = node.box.longest_axis();
     const auto twice_centre = [axis](const Box& box) { return double{box.low.*axis} + box.high.*axis; };
@@ -100,7 +102,8 @@ inline std::uint32_t BoxTree::middle_of(const Node& node) {
     return kept_as<std::uint32_t>(divided - leaves_.begin());
 }
 
-/// Calls visit(item of a, item of b) where their boxes overlap. Splits the nodes that it enters.
+/// Calls visit(item of a, item of b) for the pairs of items whose boxes overlap. Splits the nodes that it
+/// enters.
 template <typename Visit>
 void for_each_overlap(BoxTree& a, std::uint32_t a_index, BoxTree& b, std::uint32_t b_index, Visit&& visit) {
     const BoxTree::Node &p = a.node(a_index), &q = b.node(b_index);

@@ -11,7 +11,7 @@ namespace echinus {
 
 namespace {
 
-/// The point at pi / 4 * part / count by the Taylor series of cosine and sine: the first term left out is
+/// The point at pi / 4 * part / count, by the Taylor series of cosine and sine: the first omitted term is
 /// below 1e-19.
 CirclePoint first_octant_point(std::uint64_t part, std::uint64_t count) {
     // Symmetry demands equal coordinates here; the two series may differ in the last digit.
@@ -30,14 +30,15 @@ CirclePoint first_octant_point(std::uint64_t part, std::uint64_t count) {
 } // namespace
 
 CirclePoint circle_point(std::uint64_t index, std::uint64_t count) {
-    // The octant is found in integers, so that symmetric indices evaluate the series at the same angle.
+    // The octant is computed in integers, so that the series are evaluated at the same angle for symmetric
+    // indices.
     const std::uint64_t eighths = 8 * (index % count);
     const std::uint64_t octant = eighths / count;
     const std::uint64_t remainder = eighths % count;
     const bool mirrored = octant % 2 == 1;
     CirclePoint p = first_octant_point(mirrored ? count - remainder : remainder, count);
     if (mirrored) std::swap(p.cosine, p.sine);
-    switch (octant / 2) { // quarter turns; 0 - x instead of -x avoids negative zeros
+    switch (octant / 2) { // number of quarter turns; 0 - x instead of -x avoids negative zeros
     case 0:
         return p;
     case 1:
@@ -51,12 +52,12 @@ CirclePoint circle_point(std::uint64_t index, std::uint64_t count) {
 
 namespace {
 
-/// The angle whose tangent is sine / (1 + cosine), half the one with this sine and cosine; three times
-/// halved, so that a short series will do. @pre sine and cosine are not negative
+/// The angle whose tangent is sine / (1 + cosine), which is half the angle with this sine and cosine. It is
+/// halved three more times, so that a short series suffices. @pre sine and cosine are not negative
 double half_angle_of(double sine, double cosine) {
     double tangent = sine / (1 + cosine);
     for (int i = 0; i < 3; ++i) tangent = tangent / (1 + std::sqrt(1 + tangent * tangent));
-    // Of tangents up to 0.1, atan to the last bit: x - x^3 / 3 + x^5 / 5 ...
+    // atan(x) = x - x^3 / 3 + x^5 / 5 ..., exact to the last bit for tangents up to 0.1.
     const double square = tangent * tangent;
     double sum = 0;
     for (int power = 17; power > 0; power -= 2) sum = 1.0 / power - square * sum;
@@ -66,7 +67,8 @@ double half_angle_of(double sine, double cosine) {
 } // namespace
 
 Rotation Rotation::about(const Vec3d& axis, double angle_rad) {
-    // Half the angle in steps of a full turn / 2^50, 6e-15 rad, so that every machine gives the same bits.
+    // Half the angle, rounded to steps of a full turn / 2^50, 6e-15 rad, so that every machine gives the same
+    // bits.
     constexpr std::int64_t kStepsPerTurn = std::int64_t{1} << 50;
     const double half_turns = std::remainder(angle_rad, 4 * std::numbers::pi) / (4 * std::numbers::pi);
     const std::int64_t steps = std::llround(half_turns * static_cast<double>(kStepsPerTurn));
@@ -84,7 +86,7 @@ Vec3d Rotation::apply(const Vec3d& v) const {
 }
 
 Vec3d Rotation::vector() const {
-    // The opposite quaternion turns the same way; of the two, this one turns by half a turn or less.
+    // The opposite quaternion is the same rotation; this one of the two rotates by at most half a turn.
     const double sign = w < 0 ? -1 : 1;
     const Vec3d axis{sign * x, sign * y, sign * z};
     const double sine = length(axis);

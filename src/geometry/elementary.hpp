@@ -9,12 +9,12 @@
 
 namespace echinus {
 
-// Elementary functions with the same bits on every machine: those of C libraries differ in their last digits,
-// while maps and answers must be the same everywhere. They take only what IEEE 754 rounds in one way: sums,
-// products, quotients, square roots.
+// Elementary functions with the same bits on every machine: those of C libraries differ in the last digits,
+// but maps and answers must be the same everywhere. They use only operations that IEEE 754 rounds in exactly
+// one way: addition, subtraction, multiplication, division and square root.
 
-/// The sum of ratio^k / (2 k + 1) over k below 13, for the series of both functions. With |ratio| at most
-/// 0.04 what is left out is less than rounding.
+/// The sum of ratio^k / (2 k + 1) over k below 13, for the series of both functions below. If |ratio| is at
+/// most 0.04, the omitted terms are less than the rounding error.
 inline double odd_series(double ratio) {
     double sum = 0;
     for (std::size_t k = 13; k-- > 0;) sum = sum * ratio + 1.0 / static_cast<double>(2 * k + 1);
@@ -33,12 +33,12 @@ inline double portable_log(double x) {
     return 2 * s * odd_series(s * s) + exponent * std::numbers::ln2;
 }
 
-/// The angle of (x, y), in [-pi, pi]; 0 of the origin.
+/// The angle of (x, y), in [-pi, pi]; 0 for the origin.
 inline double portable_atan2(double y, double x) {
     const double across = std::abs(y), along = std::abs(x), larger = std::max(across, along);
     if (!(larger > 0)) return 0;
     double tangent = std::min(across, along) / larger;
-    // Of a quarter of the angle.
+    // The tangent of a quarter of the angle.
     for (int i = 0; i < 2; ++i) tangent /= 1 + std::sqrt(1 + tangent * tangent);
     double angle = 4 * tangent * odd_series(-tangent * tangent);
     if (across > along) angle = std::numbers::pi / 2 - angle;

@@ -34,11 +34,11 @@ SumAndError exact_product_of(double a, double b) {
     return {value, a_low * b_low - (((value - a_high * b_high) - a_low * b_high) - a_high * b_low)};
 }
 
-/// A sum of doubles without rounding: its value is that of its parts, which do not overlap and grow in
-/// magnitude, so that the last one has the sign of all (Shewchuk 1997, "Adaptive Precision Floating-Point
-/// Arithmetic", Grow-Expansion with zeros left out).
+/// A sum of doubles without rounding. Its value is the sum of its parts, which do not overlap and grow in
+/// magnitude, so that the last one has the sign of the sum (Shewchuk 1997, "Adaptive Precision Floating-Point
+/// Arithmetic", Grow-Expansion without zeros).
 ///
-/// Needs IEEE arithmetic as written: no contraction into fused operations, no reordering.
+/// Requires IEEE arithmetic exactly as written, without contraction into fused operations or reordering.
 /// @tparam capacity  the largest number of calls of add()
 template <std::size_t capacity>
 class ExactSum {
@@ -54,18 +54,18 @@ class ExactSum {
         count_ = kept;
     }
 
-    /// -1, 0 or 1.
+    /// Returns -1, 0 or 1.
     int sign() const {
         if (count_ == 0) return 0;
         return parts_[count_ - 1] > 0 ? 1 : -1;
     }
 
   private:
-    std::array<double, capacity> parts_; // the first count_ are written
+    std::array<double, capacity> parts_; // only the first count_ are initialised
     std::size_t count_ = 0;
 };
 
-/// p - q, where floats can hold it.
+/// p - q, if it is representable as a float.
 std::optional<double> difference_in_float(float p, float q) {
     const auto [value, error] = exact_sum_of(p, -double{q});
     if (error != 0 || std::abs(value) > double{std::numeric_limits<float>::max()} ||
@@ -106,12 +106,12 @@ void add_triple_product(ExactSum<capacity>& sum, const Vec3d& p, const Vec3d& q,
 } // namespace
 
 int exact_orientation(const Vec3f& a, const Vec3f& b, const Vec3f& c, const Vec3f& d) noexcept {
-    // Surfaces that touch have vertices in common. A point equal to d never gets here.
+    // Surfaces that touch have vertices in common. A point equal to d is excluded before.
     if (a == b || b == c || a == c) return 0;
     const auto u = difference_in_floats(a, d);
     const auto v = difference_in_floats(b, d);
     const auto w = difference_in_floats(c, d);
-    if (u && v && w) { // the usual case where points are coplanar on purpose
+    if (u && v && w) { // the usual case if points are coplanar on purpose
         ExactSum<12> sum;
         add_triple_product(sum, *u, *v, *w);
         return sum.sign();

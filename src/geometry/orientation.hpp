@@ -4,10 +4,10 @@
 
 #include <cmath>
 
-/// On which side does a point lie? Decided exactly for all finite floats: a sum in double, and where its
-/// rounding could matter one without rounding. Filters and error bounds: Shewchuk 1997, "Adaptive Precision
-/// Floating-Point Arithmetic and Fast Robust Geometric Predicates". Products of three floats neither overflow
-/// nor underflow in double, so the bounds hold for all floats.
+/// The side on which a point lies, decided exactly for all finite floats: by a sum in double and, if its
+/// rounding could matter, by a sum without rounding. Filters and error bounds: Shewchuk 1997, "Adaptive
+/// Precision Floating-Point Arithmetic and Fast Robust Geometric Predicates". Products of three floats
+/// neither overflow nor underflow in double, so the bounds hold for all floats.
 namespace echinus {
 
 /// A point of a plane; its coordinates are floats, so that they and their products are exact in double.
@@ -18,8 +18,8 @@ struct Point2 {
 int exact_orientation(const Vec3f& a, const Vec3f& b, const Vec3f& c, const Vec3f& d) noexcept;
 int exact_orientation(const Point2& a, const Point2& b, const Point2& c) noexcept;
 
-/// Sign of (a - d) . ((b - d) x (c - d)): 1 where a, b, c turn clockwise seen from d, -1 counter-clockwise,
-/// 0 where all four lie in a plane.
+/// Sign of (a - d) . ((b - d) x (c - d)): 1 if a, b, c turn clockwise seen from d, -1 if counter-clockwise, 0
+/// if all four are coplanar.
 /// @pre finite
 inline int orientation(const Vec3f& a, const Vec3f& b, const Vec3f& c, const Vec3f& d) noexcept {
     constexpr double kErrorBound = 7.77156117237610e-16; // (7 + 56 e) e, e = 2^-53
@@ -37,7 +37,7 @@ inline int orientation(const Vec3f& a, const Vec3f& b, const Vec3f& c, const Vec
     return exact_orientation(a, b, c, d);
 }
 
-/// 1 where a, b, c turn counter-clockwise, -1 clockwise, 0 where they lie on a line.
+/// 1 if a, b, c turn counter-clockwise, -1 if clockwise, 0 if they are collinear.
 /// @pre finite
 inline int orientation(const Point2& a, const Point2& b, const Point2& c) noexcept {
     constexpr double kErrorBound = 3.33066907387547e-16; // (3 + 16 e) e

@@ -17,7 +17,7 @@ namespace echinus {
 namespace {
 
 int concurrency(unsigned thread_count) {
-    // oneTBB prints a warning when asked for more threads than it has.
+    // oneTBB prints a warning if more threads are requested than it has.
     const int available = tbb::info::default_concurrency();
     return thread_count == 0 ? available
                              : static_cast<int>(std::min(static_cast<unsigned>(available), thread_count));

@@ -27,19 +27,19 @@ void parallel_for_workers(
     const std::function<void(std::size_t worker, std::size_t begin, std::size_t end)>& body);
 
 /// Calls `answer(begin, end)` for pieces of a batch that together cover [0, count), on up to `thread_count`
-/// threads where the batch is large enough to gain from them. No piece has more than 2^30 items. When no
-/// thread or no memory is available, this thread does the remaining work, possibly repeating some of it.
+/// threads if the batch is large enough to benefit. No piece has more than 2^30 items. If no thread or no
+/// memory is available, this thread does the remaining work, possibly repeating some of it.
 void for_each_piece(std::size_t count, unsigned thread_count,
                     const std::function<void(std::size_t begin, std::size_t end)>& answer) noexcept;
 template <typename Answer>
 void for_each_piece(std::size_t count, unsigned thread_count, const Answer& answer) noexcept {
-    // A std::function holds a reference without allocating; a lambda's captures may need memory, which may
-    // fail.
+    // A std::function can hold a reference without allocating; the captures of a lambda may need memory, and
+    // allocating it may fail.
     const std::function<void(std::size_t, std::size_t)> reference = std::cref(answer);
     for_each_piece(count, thread_count, reference);
 }
 
-/// Sets each answer of a batch to answer_at(i), as for_each_piece() divides them.
+/// Sets each answer of a batch to answer_at(i), in pieces as by for_each_piece().
 template <typename Answer, typename AnswerAt>
 void answer_each(std::span<Answer> answers, unsigned thread_count, const AnswerAt& answer_at) noexcept {
     for_each_piece(answers.size(), thread_count, [&](std::size_t begin, std::size_t end) {
@@ -47,7 +47,7 @@ void answer_each(std::span<Answer> answers, unsigned thread_count, const AnswerA
     });
 }
 
-/// Calls both, at the same time if two threads are available. Exceptions reach the caller.
+/// Calls both functions, concurrently if two threads are available. Exceptions reach the caller.
 void parallel_invoke(unsigned thread_count, const std::function<void()>& first,
                      const std::function<void()>& second);
 

@@ -7,18 +7,18 @@
 
 namespace echinus {
 
-/// Memory for the arrays that a step needs for a while. Those taken last are given back first, mostly, and
-/// all of it is kept for the next step: steps allocate nothing once they have seen their largest. Of one
-/// thread.
+/// Memory for the temporary arrays of a step. Mostly, arrays are given back in the reverse of the order in
+/// which they were taken. All memory is kept for the next step, so that steps allocate nothing after the
+/// largest one. For use by one thread.
 class Scratch {
   public:
     Scratch() = default;
     Scratch(const Scratch&) = delete;
     Scratch& operator=(const Scratch&) = delete;
 
-    /// Aligned to kAlignment. @throws std::bad_alloc
+    /// Returns memory aligned to kAlignment. @throws std::bad_alloc
     void* take(std::size_t byte_count);
-    /// @param memory  that take() gave
+    /// @param memory  a result of take()
     void give_back(void* memory) noexcept;
 
     static constexpr std::size_t kAlignment = 64;
@@ -30,29 +30,33 @@ class Scratch {
         }
     };
     using Memory = std::unique_ptr<std::byte, Aligned>;
-    /// In front of each array.
+    /// A header in front of each array.
     struct alignas(kAlignment) Header {
-        Header* below; ///< of the array taken before; null for the first, and beyond the buffer
+        Header* below; ///< header of the array taken before; null for the first, and outside the buffer
         std::size_t byte_count;
-        bool is_within, is_given_back; ///< the buffer
+        bool is_within, is_given_back; ///< is_within: the array is in the buffer
     };
 
     static Memory allocate(std::size_t byte_count);
 
     Memory buffer_;
     std::size_t size_ = 0, used_ = 0;
-    std::size_t beyond_ = 0, most_beyond_ = 0; ///< bytes that the buffer had no room for: now, and at a time
+    std::size_t beyond_ = 0,
+                most_beyond_ =
+                    0; ///< bytes that the buffer has no room for: at present, and the most at a time
     Header* last_ = nullptr;
 };
 
-/// By which a std::vector takes its memory from a Scratch, which has to outlive it.
+/// The allocator by which a std::vector takes its memory from a Scratch, which must outlive it.
 template <typename T>
 struct ScratchAllocator {
     using value_type = T;
 
-    ScratchAllocator(Scratch& scratch_in) : scratch(&scratch_in) {} // NOLINT: vectors are given a Scratch
+    ScratchAllocator(Scratch& scratch_in)
+        : scratch(&scratch_in) {} // NOLINT: implicit, since vectors are given a Scratch
     template <typename Other>
-    ScratchAllocator(const ScratchAllocator<Other>& other) : scratch(other.scratch) {} // NOLINT: as others do
+    ScratchAllocator(const ScratchAllocator<Other>& other)
+        : scratch(other.scratch) {} // NOLINT: implicit, as for other allocators
 
     T* allocate(std::size_t count) { return static_cast<T*>(scratch->take(count * sizeof(T))); }
     void deallocate(T* items, std::size_t) noexcept { scratch->give_back(items); }
@@ -67,17 +71,17 @@ struct ScratchAllocator {
 template <typename T>
 using ScratchVector = std::vector<T, ScratchAllocator<T>>;
 
-/// The memory in which batches of the calling thread have what is too large for a small stack. The thread
-/// keeps it until it ends. @throws std::bad_alloc
+/// The memory for data of the calling thread's batches that is too large for a small stack. The thread keeps
+/// it until it ends. @throws std::bad_alloc
 Scratch& scratch_of_thread();
 
-/// An object in that memory. Calls may nest, as where a custom map asks another map.
+/// An object in that memory. Calls may nest, for example if a custom map queries another map.
 template <typename T>
 class OnScratch {
     static_assert(alignof(T) <= Scratch::kAlignment);
 
   public:
-    /// As by "T object;": members without an initialiser keep any value.
+    /// Like "T object;": members without an initialiser have arbitrary values.
     OnScratch() : object_(new (memory_.address) T) {}
     template <typename... Arguments>
     explicit OnScratch(const Arguments&... arguments) : object_(new (memory_.address) T(arguments...)) {}

@@ -10,7 +10,7 @@ namespace echinus {
 
 namespace {
 
-/// Spreads bits: bit k goes to bit 3 k. @param bits  MortonCurve::kBitsPerAxis of them
+/// Spreads bits: bit k moves to bit 3 k. @param bits  a number of MortonCurve::kBitsPerAxis bits
 std::uint32_t spread(std::uint32_t bits) {
     bits = (bits | bits << 8) & 0x0700F;
     bits = (bits | bits << 4) & 0x430C3;
@@ -36,7 +36,7 @@ std::uint32_t MortonCurve::key(const Vec3f& point_local) const noexcept {
 void sort_by_key(std::span<KeyedParticle> particles, std::span<KeyedParticle> spare) noexcept {
     constexpr int kDigitBits = 11;
     constexpr std::uint32_t kMask = (1U << kDigitBits) - 1;
-    static_assert(3 * MortonCurve::kBitsPerAxis <= 2 * kDigitBits); // so that two passes do
+    static_assert(3 * MortonCurve::kBitsPerAxis <= 2 * kDigitBits); // so that two passes suffice
     for (int shift = 0; shift < 2 * kDigitBits; shift += kDigitBits) {
         std::array<std::uint32_t, kMask + 2> starts{};
         for (const KeyedParticle& particle : particles) ++starts[(particle.key >> shift & kMask) + 1];

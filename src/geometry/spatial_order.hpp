@@ -20,21 +20,21 @@ class MortonCurve {
   public:
     static constexpr int kBitsPerAxis = 7;
 
-    /// @param centre, radius  of the ball in the cube
+    /// @param centre, radius  the ball that the cube encloses
     MortonCurve(const Vec3f& centre, float radius);
 
-    /// The number of a place's cell. A place beyond the cube counts as where its ray from the centre leaves
-    /// the cube, and NaN as 0.
+    /// The number of the cell of a point. A point beyond the cube counts as the point at which its ray from
+    /// the centre leaves the cube; NaN has number 0.
     std::uint32_t key(const Vec3f& point_local) const noexcept;
 
   private:
-    static constexpr std::uint32_t kLast = (1U << kBitsPerAxis) - 1; ///< cell of a row
+    static constexpr std::uint32_t kLast = (1U << kBitsPerAxis) - 1; ///< the last cell of a row
 
     Vec3f centre_;
     float radius_, cells_per_unit_;
 };
 
-/// Sorts by key, stably. @param spare  as long as `particles`
+/// Sorts by key, stably. @param spare  temporary memory, as long as `particles`
 void sort_by_key(std::span<KeyedParticle> particles, std::span<KeyedParticle> spare) noexcept;
 
 } // namespace echinus

@@ -11,8 +11,8 @@
 
 namespace echinus {
 
-// The nearest point of a segment and of a triangle to the origin. Segments may be points, and triangles may
-// have no area.
+// The points of a segment and of a triangle that are nearest to the origin. Segments may be points, and
+// triangles may have no area.
 
 using TriangleCorners = std::array<Vec3d, 3>;
 
@@ -20,7 +20,7 @@ inline double clamp01(double value) {
     return value < 0 ? 0 : value > 1 ? 1 : value;
 }
 
-/// The point of a segment that is nearest to the origin, as a share of the way from a to b.
+/// The point of a segment that is nearest to the origin, as a fraction of the segment from a to b.
 inline double nearest_share(const Vec3d& a, const Vec3d& ab) {
     const double length_sq = dot(ab, ab);
     return length_sq > 0 ? clamp01(-dot(a, ab) / length_sq) : 0;
@@ -32,7 +32,7 @@ struct NearestOnTriangle {
     Feature feature = Feature::Unknown;
 };
 
-/// A triangle's nearest point to the origin, and the part of the triangle that contains it.
+/// The point of a triangle that is nearest to the origin, and the part of the triangle that contains it.
 inline NearestOnTriangle nearest_on_triangle(const TriangleCorners& corners) {
     const auto& [a, b, c] = corners;
     const Vec3d normal = cross(b - a, c - b);
@@ -65,8 +65,9 @@ inline float angle_between(const Vec3d& a, const Vec3d& b) {
                             static_cast<float>(dot(a, b) / (length(a) * length(b))));
 }
 
-/// The angle that a triangle spans around the origin: a full turn inside, half a turn on an edge, the
-/// corner's angle at a corner. Edges and corners within `reach` count as met.
+/// The angle that a triangle spans around the origin, which must lie on it: 2 pi in the interior, pi on an
+/// edge, and at a corner the angle of that corner. Edges and corners within `reach` of the origin count as
+/// containing it.
 inline float spanned_angle(const TriangleCorners& corners, double reach) {
     for (std::size_t k = 0; k < 3; ++k)
         if (length(corners[k]) <= reach)

@@ -12,12 +12,12 @@
 
 namespace echinus {
 
-// Conversions to whole numbers that keep the value. A number that is out of range would be undefined, or
-// other bits without a word: with assertions it stops the program, and without them these are casts.
+// Conversions to integers that preserve the value. Converting a number that is out of range would be
+// undefined or silently change it: with assertions it stops the program; without them, these are plain casts.
 
 namespace detail {
 
-/// False for NaN. Both bounds are powers of two or 0, hence exact.
+/// False for NaN. Both bounds are powers of two or 0, hence exactly representable.
 template <std::integral To, std::floating_point From>
 constexpr bool holds_truncated(From value) {
     constexpr int kDigits = std::numeric_limits<To>::digits;
@@ -30,34 +30,35 @@ constexpr bool holds_truncated(From value) {
 
 } // namespace detail
 
-/// A number rounded towards 0. @pre the result can be held; not NaN
+/// A number rounded towards 0. @pre the result is in range, and the value is not NaN
 template <std::integral To, std::floating_point From>
 constexpr To truncated_to(From value) {
     assert(detail::holds_truncated<To>(value));
     return static_cast<To>(value);
 }
 
-/// The nearest whole number, the even one of two. @pre |value| < 2^63; not NaN
+/// The nearest integer; of two, the even one. @pre |value| < 2^63; not NaN
 inline std::int64_t nearest_whole(double value) {
     assert(detail::holds_truncated<std::int64_t>(value));
     return std::llrint(value);
 }
 
-/// The same number in another type. @pre it can be held
+/// The same number as another type. @pre it is in the range of that type
 template <std::integral To, std::integral From>
 constexpr To kept_as(From value) {
     assert(std::in_range<To>(value));
     return static_cast<To>(value);
 }
 
-/// Two numbers in one, in the order of the pairs. @pre low has kLowBits bits, high has the others
+/// Packs two numbers into one, so that the results compare like the pairs. @pre low fits into kLowBits bits,
+/// and high into the others
 template <int kLowBits>
 constexpr std::uint64_t packed(std::uint64_t high, std::uint64_t low) {
     assert(low >> kLowBits == 0 && high >> (64 - kLowBits) == 0);
     return high << kLowBits | low;
 }
 
-/// std::bit_cast, which the libc++ of Emscripten 3.1 lacks.
+/// std::bit_cast, which is missing from the libc++ of Emscripten 3.1.
 template <typename To, typename From>
 To bit_cast(const From& from) noexcept {
     static_assert(sizeof(To) == sizeof(From) && std::is_trivially_copyable_v<To> &&
@@ -67,11 +68,11 @@ To bit_cast(const From& from) noexcept {
     return to;
 }
 
-/// Products of two int64 where the compiler has no whole numbers of 128 bits; always declared, so that a test
-/// compares both.
+/// Products of two int64 for compilers without 128-bit integers. Always declared, so that a test can compare
+/// both implementations.
 namespace portable {
 
-/// A whole number of 128 bits, in two's complement: the order is that of the parts.
+/// A 128-bit integer in two's complement; it is ordered by `high`, then `low`.
 struct Int128 {
     std::int64_t high;
     std::uint64_t low;
@@ -79,7 +80,7 @@ struct Int128 {
     friend auto operator<=>(const Int128&, const Int128&) = default;
 };
 
-/// By the halves of each factor; no sum of the middle exceeds 64 bits.
+/// Multiplies the halves of the factors; no sum of the middle terms exceeds 64 bits.
 constexpr Int128 wide_product(std::int64_t a, std::int64_t b) {
     constexpr std::uint64_t kLow = 0xffff'ffff;
     const auto ua = static_cast<std::uint64_t>(a), ub = static_cast<std::uint64_t>(b);
@@ -87,7 +88,7 @@ constexpr Int128 wide_product(std::int64_t a, std::int64_t b) {
     const std::uint64_t middle = (ua >> 32) * (ub & kLow) + (low >> 32);
     const std::uint64_t other_middle = (ua & kLow) * (ub >> 32) + (middle & kLow);
     std::uint64_t high = (ua >> 32) * (ub >> 32) + (middle >> 32) + (other_middle >> 32);
-    // A negative factor counted as 2^64 more.
+    // A negative factor was counted as 2^64 more.
     if (a < 0) high -= ub;
     if (b < 0) high -= ua;
     return {static_cast<std::int64_t>(high), other_middle << 32 | (low & kLow)};
@@ -97,7 +98,7 @@ constexpr Int128 wide_product(std::int64_t a, std::int64_t b) {
 
 #ifdef __SIZEOF_INT128__
 
-/// Holds the product of two int64, and is ordered.
+/// A type that holds the product of two int64 and is ordered.
 __extension__ using Int128 = __int128;
 
 constexpr Int128 wide_product(std::int64_t a, std::int64_t b) {

@@ -22,7 +22,7 @@ namespace {
 
 using Body = std::function<void(std::size_t, std::size_t)>;
 
-/// A thread that waits awake, and lets others run only after long: on a busy machine it would not come back
+/// Lets a thread wait actively. It yields only after a long time: on a busy machine it might not run again
 /// before the work is done.
 class Patience {
   public:
@@ -45,16 +45,16 @@ class Patience {
 } // namespace
 
 /// The pieces of a loop are claimed by a ticket: the number of the loop, and how many pieces were taken from
-/// the front and from the back. Each worker takes from one end, so that it mostly finds what it had in the
-/// loop before: memory that another one wrote comes slowly. Before a loop is described anew, the ticket is
-/// closed, so that whoever has read a part of the old description and a part of the new one cannot claim
-/// anything.
+/// the front and from the back. Each worker takes pieces from one end, so that it mostly gets those that it
+/// processed in the previous loop: memory written by another thread is slow to read. Before the description
+/// of the loop is replaced, the ticket is closed, so that a thread that has read parts of both descriptions
+/// cannot claim anything.
 struct Workers::Team {
-    static constexpr unsigned kBits = 20; ///< of each end
+    static constexpr unsigned kBits = 20; ///< bits for the number of pieces taken from each end
     static constexpr std::uint64_t kMostPieces = (std::uint64_t{1} << kBits) - 1;
     static constexpr std::uint64_t kFromBack = std::uint64_t{1} << kBits;
     static constexpr std::uint64_t kNextLoop = kFromBack << kBits;
-    static constexpr std::uint64_t kClosed = kNextLoop - 1; ///< of a loop
+    static constexpr std::uint64_t kClosed = kNextLoop - 1; ///< the ticket of a closed loop
 
     explicit Team(int thread_count) : arena(thread_count) {}
 
@@ -71,7 +71,7 @@ struct Workers::Team {
         return true;
     }
 
-    /// @return whether there was a piece left
+    /// @return whether a piece was left
     bool take_one(std::size_t worker) {
         std::uint64_t now = ticket.load(std::memory_order_acquire);
         for (;;) {

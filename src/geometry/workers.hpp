@@ -9,28 +9,29 @@
 
 namespace echinus {
 
-/// Threads that share the work of many short loops, one loop after the other.
+/// Threads that share the work of many short loops, one after the other.
 ///
-/// Work is cut into pieces by its size, never by the number of threads. Where a loop gathers results, it does
-/// so piece by piece, in their order: then the threads do not decide any bits.
+/// Work is cut into pieces according to its size, never to the number of threads. A loop that gathers results
+/// does so piece by piece, in their order, so that the result does not depend on the threads.
 ///
-/// Loops are shared while a session lasts. In it, threads that have nothing to do wait awake for the next
-/// loop, since to wake one takes longer than many loops do. They are oneTBB's; one that has not come yet is
-/// not waited for.
+/// Loops are shared during a session. Idle threads then wait actively for the next loop, since waking a
+/// thread takes longer than many loops do. The threads are oneTBB's; a loop does not wait for threads that
+/// have not started yet.
 class Workers {
   public:
-    /// @param thread_count  0: all cores. Without oneTBB there is one
+    /// @param thread_count  0: all cores. Without oneTBB there is only one thread
     explicit Workers(unsigned thread_count = 1);
-    /// As many of its own, without a session.
+    /// Creates as many threads of its own, without a session.
     Workers(const Workers& other) : Workers(static_cast<unsigned>(other.count_)) {}
     Workers& operator=(const Workers&) = delete;
     ~Workers();
 
     std::size_t count() const { return count_; }
-    /// Of a worker, for the piece that it has taken; the first one's is for the caller between loops, too.
+    /// The memory of a worker for the piece that it has taken. Between loops, the caller may use the first
+    /// worker's.
     Scratch& scratch(std::size_t worker = 0) const { return scratch_[worker]; }
 
-    /// While it lives, loops are shared. One at a time.
+    /// Loops are shared while a Session exists. There may be one at a time.
     class Session {
       public:
         explicit Session(const Workers& workers) : workers_(workers) { workers_.begin_session(); }
@@ -42,14 +43,16 @@ class Workers {
         const Workers& workers_;
     };
 
-    /// In a session: a thread that finds no piece to take calls task() once. Nobody does if none comes free
-    /// before the session ends, or if there is but one. The session's end waits for it.
-    /// @pre the task throws nothing, starts no loop here, and the last one is done or its session over
+    /// In a session, the first thread that finds no piece to take calls task() once. The task is not called
+    /// if no thread becomes idle before the session ends, or if there is only one thread. The end of the
+    /// session waits for a running task.
+    /// @pre the task throws nothing and starts no loop of these workers; the previous task is done, or its
+    /// session has ended
     void offer(std::function<void()> task) const;
 
     /// Calls body(worker, piece) for each piece below piece_count, in any order, with worker < count(). No
-    /// two calls with the same worker overlap in time, so each can have its own memory. Exceptions reach the
-    /// caller. A single worker allocates nothing, and takes the pieces in order.
+    /// two calls with the same worker overlap in time, so each worker can have its own memory. Exceptions
+    /// reach the caller. A single worker allocates nothing and takes the pieces in order.
     /// @pre the body starts no loop itself
     template <typename Body>
     void for_pieces(std::size_t piece_count, const Body& body) const {
@@ -59,8 +62,8 @@ class Workers {
         }
         run(piece_count, std::cref(body));
     }
-    /// Calls body(worker, piece, begin, end) for ranges of piece_size, the last of which may be shorter, that
-    /// together cover [0, count).
+    /// Calls body(worker, piece, begin, end) for ranges that together cover [0, count). Each has length
+    /// piece_size, except that the last may be shorter.
     template <typename Body>
     void for_ranges(std::size_t count, std::size_t piece_size, const Body& body) const {
         for_pieces(piece_count(count, piece_size), [&](std::size_t worker, std::size_t piece) {
@@ -81,10 +84,10 @@ class Workers {
 
     std::size_t count_;
     std::unique_ptr<Scratch[]> scratch_; ///< [worker]
-    std::unique_ptr<Team> team_;         ///< none for a single worker
+    std::unique_ptr<Team> team_;         ///< null for a single worker
 };
 
-/// A list to which the pieces of a parallel loop append, in the order of the pieces.
+/// A list to which the pieces of a parallel loop append; its items are in the order of the pieces.
 template <typename T>
 class PiecewiseList {
   public:
@@ -93,7 +96,7 @@ class PiecewiseList {
         for (Part& part : by_worker_) part.items.clear();
         slices_.resize(piece_count);
     }
-    /// Calls append(items) with a vector to append to. Once for each piece.
+    /// Calls append(items) with a vector to append to. Must be called once for each piece.
     template <typename Append>
     void add(std::size_t worker, std::size_t piece, const Append& append) {
         std::vector<T>& items = by_worker_[worker].items;
@@ -101,7 +104,7 @@ class PiecewiseList {
         append(items);
         slices_[piece] = {worker, first, items.size()};
     }
-    /// Calls visit(item) for all, in order.
+    /// Calls visit(item) for all items, in order.
     template <typename Visit>
     void for_each(const Visit& visit) const {
         for (const Slice& slice : slices_)
@@ -116,7 +119,7 @@ class PiecewiseList {
     }
 
   private:
-    /// On cache lines of its own.
+    /// Occupies separate cache lines.
     struct alignas(64) Part {
         std::vector<T> items;
     };
