@@ -9,7 +9,7 @@
 
 namespace echinus {
 
-/// Rotates coordinates cyclically until the one along `axis` is the last; the bits stay the same.
+/// Rotates coordinates cyclically so that the one along `axis` becomes the last; the bits stay the same.
 template <typename T>
 Vec3<T> turned_last(PoleAxis axis, const Vec3<T>& v) {
     switch (axis) {
@@ -22,24 +22,24 @@ Vec3<T> turned_last(PoleAxis axis, const Vec3<T>& v) {
     }
 }
 
-/// The inverse: X and Y are inverse to each other.
+/// The inverse of turned_last(): the rotations for X and Y are inverse to each other.
 template <typename T>
 Vec3<T> turned_back(PoleAxis axis, const Vec3<T>& v) {
     if (axis == PoleAxis::Z) return v;
     return turned_last(axis == PoleAxis::X ? PoleAxis::Y : PoleAxis::X, v);
 }
 
-/// The common base of grids of squares: the distance is interpolated bilinearly between the four samples
-/// around a direction.
+/// The common base of grids of squares: distances are interpolated bilinearly between the four samples around
+/// a direction.
 class BilinearGrid {
   public:
-    /// The four samples around a direction and where it lies between them.
+    /// The four samples around a direction, and its position between them.
     struct Cell {
         std::array<std::uint32_t, 4> corners; ///< (0,0), (1,0), (0,1), (1,1), the first number along u
         float u, v;                           ///< in [0, 1]
     };
 
-    /// For the four corners.
+    /// The weights of the four corners.
     static std::array<float, 4> weights(const Cell& cell) {
         return {(1 - cell.u) * (1 - cell.v), cell.u * (1 - cell.v), (1 - cell.u) * cell.v, cell.u * cell.v};
     }
@@ -59,10 +59,10 @@ class BilinearGrid {
     }
 
     static double radial_norm(const Vec3d& d) { return length(d); }
-    /// The largest distance in a sphere.
+    /// The largest entry of a map whose bounding sphere has this radius.
     static float largest_entry(float radius) { return radius; }
 
-    // The interpolated quantity is the distance itself.
+    // The interpolated quantity is the distance.
     static float interpolant(float entry, float) { return entry; }
     static float interpolant_at(const Vec3d& d) { return static_cast<float>(length(d)); }
     template <typename Coordinates>
@@ -70,7 +70,7 @@ class BilinearGrid {
         return interpolated;
     }
     static bool is_farther(float interpolant, float other) { return interpolant > other; }
-    /// An entry after its interpolant moved by `shift`.
+    /// An entry whose interpolant was moved by `shift`.
     static float moved(float entry, float shift, bool outward) {
         return outward ? entry + shift : entry - shift;
     }

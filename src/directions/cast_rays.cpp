@@ -19,7 +19,7 @@ struct Crossing {
     float distance;
 };
 
-/// Casts the rays of a grid at faces.
+/// Intersects the rays of a grid with faces.
 template <typename Grid>
 class RayCaster {
   public:
@@ -46,7 +46,7 @@ class RayCaster {
         const LatticePoint& d = directions_[direction];
         if (!cone.meets(d)) return;
         const double distance = cone.parameter(d) * norms_[direction];
-        // Snapping may lift a vertex out of the sphere by a lattice step.
+        // Snapping may move a vertex out of the sphere by a lattice step.
         crossings.push_back({direction, std::clamp(static_cast<float>(distance), 0.0F, largest_)});
     }
 
@@ -60,7 +60,8 @@ class RayCaster {
 
 using Batches = std::vector<std::vector<Crossing>>;
 
-/// In no particular order: the split of the faces between threads differs from run to run.
+/// The crossings are in no particular order: the distribution of the faces among threads differs from run to
+/// run.
 template <typename Grid>
 Batches cast_at_all_faces(const LatticeMesh& lattice, const Grid& grid, unsigned thread_count) {
     const RayCaster<Grid> caster(lattice, grid);
@@ -75,7 +76,7 @@ Batches cast_at_all_faces(const LatticeMesh& lattice, const Grid& grid, unsigned
     return batches;
 }
 
-/// [direction_count + 1] where each direction's crossings begin.
+/// [direction_count + 1] The index at which each direction's crossings begin.
 std::vector<std::uint32_t> offsets_of(const Batches& batches, std::size_t direction_count) {
     std::vector<std::uint32_t> offsets(direction_count + 1);
     std::size_t total = 0;
@@ -90,7 +91,7 @@ std::vector<std::uint32_t> offsets_of(const Batches& batches, std::size_t direct
     return offsets;
 }
 
-/// All crossings by direction, in order.
+/// All crossings by direction, in ascending order.
 Crossings sorted(const Batches& batches, std::size_t direction_count, unsigned thread_count) {
     Crossings result{offsets_of(batches, direction_count), {}};
     result.distances.resize(result.offsets.back());
@@ -98,7 +99,7 @@ Crossings sorted(const Batches& batches, std::size_t direction_count, unsigned t
     for (const auto& batch : batches)
         for (const Crossing& crossing : batch)
             result.distances[next[crossing.direction]++] = crossing.distance;
-    // Sorting also removes the dependence on thread timing.
+    // Sorting also removes the dependence on the timing of threads.
     parallel_for(direction_count, thread_count, [&](std::size_t begin, std::size_t end) {
         for (std::size_t d = begin; d < end; ++d)
             std::sort(result.distances.begin() + result.offsets[d],

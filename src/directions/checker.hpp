@@ -13,18 +13,18 @@
 
 namespace echinus {
 
-/// The remedy that ends every sentence about a bad map file.
+/// The remedy with which every message about an invalid map file ends.
 inline constexpr const char* kBuildAgain = "; build the map again with echinus build";
 
-/// Checks of a map's numbers that every kind of map needs, by the reader of files and at the end of a build
-/// alike: a map that could not be read back is not handed out. A failure throws an Error Damaged whose
-/// sentence names the field, or the array and the index.
+/// Checks of a map's numbers that every kind of map needs. Both the reader of files and the end of a build
+/// use them: a map that could not be read back is never returned. A failure throws an Error Damaged whose
+/// message names the field, or the array and the index.
 class Checker {
   public:
-    /// Of a map from untrusted bytes. @param name  of the file, with which the sentence begins
+    /// For a map from untrusted bytes. @param name  the name of the file, with which messages begin
     explicit Checker(const std::string& name) : name_(&name) {}
     explicit Checker(std::string&&) = delete;
-    /// Of a map that was built just now, in which a fault is the library's own.
+    /// For a map that was just built, in which a fault is the library's own.
     static Checker of_build() { return {}; }
 
     [[noreturn]] void fail(const std::string& finding) const {
@@ -40,7 +40,7 @@ class Checker {
         fail(std::string(array) + "[" + std::to_string(index) + "] " + finding);
     }
 
-    /// min <= value <= max; NaN fails.
+    /// Checks that min <= value <= max; NaN fails.
     template <typename T>
     void check_range(std::string_view field, T value, T min, T max) const {
         if (value >= min && value <= max) return;
@@ -64,7 +64,8 @@ class Checker {
              std::to_string(expected));
     }
 
-    /// Where the pieces of an array begin: [piece_count + 1] numbers that start at 0 and do not descend.
+    /// Checks the offsets at which the pieces of an array begin: [piece_count + 1] numbers that start at 0
+    /// and do not descend.
     void check_offsets(std::string_view array, std::span<const std::uint32_t> offsets,
                        std::size_t piece_count) const {
         check_size(array, offsets.size(), piece_count + 1);

@@ -17,15 +17,16 @@
 
 namespace echinus {
 
-/// Directions on the six sides of a cube, evenly spaced in angle along each (the equiangular or
-/// tangent-warped cube map: Ronchi et al., "The Cubed Sphere", J. Comput. Phys. 124, 1996; the warp among
-/// others: Zucker and Higashi, "Cube-to-sphere Projections for Procedural Texturing and Beyond", JCGT 2018).
+/// Directions on the six sides of a cube, with even angles between them along each side (the equiangular or
+/// tangent-warped cube map: Ronchi et al., "The Cubed Sphere", J. Comput. Phys. 124, 1996; for this warp
+/// among others: Zucker and Higashi, "Cube-to-sphere Projections for Procedural Texturing and Beyond", JCGT
+/// 2018).
 ///
-/// A side sees a direction as (p, q, m): m along its outer axis, the largest of the three, p and q along the
-/// two axes that follow it cyclically. Sample (i, j) of a side lies at p / m = tan(pi / 4 (2 i / n - 1)), q /
-/// m likewise by j, for i and j from 0 to n. Sides are numbered +x, -x, +y, -y, +z, -z. Each has its own
-/// samples on its border, so that samples on the cube's edges appear twice and those on its corners three
-/// times, and no cell looks across an edge.
+/// A side represents a direction as (p, q, m): m along its outward axis, the largest of the three in
+/// magnitude, p and q along the two axes that follow it cyclically. Sample (i, j) of a side is at p / m =
+/// tan(pi / 4 (2 i / n - 1)), with q / m given by j in the same way, for i and j from 0 to n. Sides are
+/// numbered +x, -x, +y, -y, +z, -z. Each has its own samples on its border, so that samples on the cube's
+/// edges appear twice and those on its corners three times, and no cell extends across an edge.
 ///
 /// The interpolated quantity is the distance, as on the paper's grid.
 class CubeGrid : public BilinearGrid {
@@ -39,7 +40,7 @@ class CubeGrid : public BilinearGrid {
         return (side * width_ + row) * width_ + column;
     }
 
-    /// (p, q, m) of a vector, m with the sign that it has in the mesh's frame.
+    /// A vector as (p, q, m); m keeps the sign that it has in the mesh's frame.
     template <typename T>
     static Vec3<T> to_side(std::uint32_t side, const Vec3<T>& v) {
         return turned_last(PoleAxis(side / 2), v);
@@ -50,7 +51,7 @@ class CubeGrid : public BilinearGrid {
     }
     static bool is_negative(std::uint32_t side) { return side % 2 == 1; }
 
-    /// Unit vectors of all samples by index. Samples of one direction have the same bits.
+    /// Unit vectors of all samples by index. Samples with the same direction have the same bits.
     std::vector<Vec3d> directions() const {
         std::vector<Vec3d> result;
         for_all_samples([&](std::uint32_t side, double p, double q) {
@@ -60,8 +61,8 @@ class CubeGrid : public BilinearGrid {
         return result;
     }
     std::vector<LatticePoint> lattice_directions() const { return echinus::lattice_directions(directions()); }
-    /// The solid angle of each sample, up to a common factor; half of it on a side's border, a quarter on its
-    /// corners.
+    /// The solid angle of each sample, up to a common factor; on a side's border it is halved, on the side's
+    /// corners quartered.
     std::vector<double> solid_angle_weights() const {
         std::vector<double> result;
         for_all_samples([&](std::uint32_t, double p, double q) {
@@ -77,8 +78,7 @@ class CubeGrid : public BilinearGrid {
         std::uint32_t side;
     };
 
-    /// @param d  any length, zero included (then +z). Must be finite, otherwise the coordinates are
-    /// meaningless
+    /// @param d  of any length; 0 counts as +z. Must be finite, otherwise the coordinates are meaningless
     Coordinates coordinates_of(const Vec3f& d) const {
         const std::uint32_t side = side_of(d);
         const Vec3f s = to_side(side, d);
@@ -102,7 +102,7 @@ class CubeGrid : public BilinearGrid {
     }
     Cell locate(const Vec3f& d) const { return cell_at(coordinates_of(d)); }
 
-    /// The gradient of |x| - S(u, v) on the map's surface; u runs with the angle atan(p / m), whose gradient
+    /// The gradient of |x| - S(u, v) on the map's surface; u grows with the angle atan(p / m), whose gradient
     /// is (m, 0, -p) / (p^2 + m^2).
     /// @param distance  S; slope_u and slope_v are its derivatives per cell
     Vec3f surface_gradient(const Vec3f& e_r, const Cell& cell, float distance, float, float slope_u,
@@ -122,8 +122,9 @@ class CubeGrid : public BilinearGrid {
     static Vec3f from_grid(const Vec3f& v) { return v; }
     static Vec3d to_grid(const Vec3d& v) { return v; }
 
-    /// Calls `visit(corners)` for each cell, its indices counter-clockwise seen from outside. Samples that
-    /// appear more than once count as their first occurrence, which closes the cube's edges.
+    /// Calls `visit(corners)` for each cell, with the indices of its corners counter-clockwise seen from
+    /// outside. A sample that appears several times is represented by its first occurrence, so that no gaps
+    /// remain at the cube's edges.
     template <typename Visit>
     void for_each_facet(const Visit& visit) const {
         for (std::uint32_t side = 0; side < 6; ++side)
@@ -132,14 +133,14 @@ class CubeGrid : public BilinearGrid {
                     const std::array<std::uint32_t, 4> q{canonical(side, i, j), canonical(side, i + 1, j),
                                                          canonical(side, i + 1, j + 1),
                                                          canonical(side, i, j + 1)};
-                    if (is_negative(side)) // p and q run clockwise there
+                    if (is_negative(side)) // p and q run clockwise on this side
                         visit(std::array{q[0], q[3], q[2], q[1]});
                     else
                         visit(q);
                 }
     }
 
-    /// The index that all samples of one direction share: the lowest.
+    /// The lowest of the indices of all samples with the same direction.
     std::uint32_t canonical(std::uint32_t side, std::uint32_t column, std::uint32_t row) const {
         const std::int64_t n = n_;
         const Vec3<std::int64_t> v =
@@ -161,12 +162,12 @@ class CubeGrid : public BilinearGrid {
         if (ax >= ay) return d.x < 0 ? 1 : 0;
         return d.y < 0 ? 3 : 2;
     }
-    /// Along one angle in cells. @pre |p| <= m
+    /// The position along one angle, in cells. @pre |p| <= m
     float along(float p, float m) const {
         const auto n = static_cast<float>(n_);
         return std::min(std::max((atan2_polynomial(p, m) * (2 / kPi) + 0.5F) * n, 0.0F), n);
     }
-    /// tan(pi / 4 (2 i / n - 1)), exactly 1 at a border and exactly symmetric.
+    /// tan(pi / 4 (2 i / n - 1)); exactly 1 in magnitude at a border, and exactly antisymmetric.
     double tangent(std::uint32_t i) const {
         const std::int64_t from_middle = 2 * std::int64_t{i} - n_;
         const auto distance = static_cast<std::uint64_t>(from_middle < 0 ? -from_middle : from_middle);
@@ -175,7 +176,7 @@ class CubeGrid : public BilinearGrid {
         const double t = point.sine / point.cosine;
         return from_middle < 0 ? -t : t;
     }
-    /// Calls use(side, p / m, q / m) for the samples by index.
+    /// Calls use(side, p / m, q / m) for the samples in the order of their indices.
     template <typename Use>
     void for_all_samples(const Use& use) const {
         std::vector<double> tangents(width_);

@@ -16,7 +16,7 @@ namespace echinus {
 
 namespace {
 
-/// The smallest float that is no less than any point's distance from the centre.
+/// The smallest float that is not less than the distance of any point from the centre.
 float enclosing_radius(std::span<const Vec3f> points, const Vec3f& centre) {
     double radius_sq = 0;
     for (const Vec3f& point : points) {
@@ -41,15 +41,16 @@ void require_usable(float radius) {
                                             number_text(kLargest) + "]; choose another unit");
 }
 
-/// Does the origin lie on the line of one of the face's edges, or on the face itself?
+/// Does the origin lie on the line through one of the face's edges, or on the face itself?
 bool touches_origin(const LatticePoint& a, const LatticePoint& b, const LatticePoint& c) {
     const LatticePoint bc = cross(b, c);
-    if (dot(a, bc) != 0) return false; // not even in its plane
+    if (dot(a, bc) != 0) return false; // not in the face's plane
     const LatticePoint ab = cross(a, b);
     const LatticePoint ca = cross(c, a);
     const LatticePoint zero{};
     if (ab == zero || bc == zero || ca == zero) return true;
-    // In the face's plane the three normals are parallel; they agree in direction exactly around the inside.
+    // In the face's plane the three normals are parallel; all point the same way if and only if the origin is
+    // inside.
     const int sign = sign_of_perturbation(ab);
     return sign_of_perturbation(bc) == sign && sign_of_perturbation(ca) == sign;
 }
@@ -61,7 +62,7 @@ bool touches_origin(const LatticeMesh& lattice) {
     });
 }
 
-/// A step that changes the centre's float coordinates: a lattice step, or more where float is coarser than
+/// A step that changes the float coordinates of the centre: a lattice step, or more if float is coarser than
 /// the lattice.
 double centre_step(const LatticeMesh& lattice) {
     const Vec3f& c = lattice.centre;
@@ -91,7 +92,7 @@ void LatticeSnapper::require_valid(std::span<const Vec3f> vertices) {
     if (!open_vertices_) open_vertices_ = find_open_vertices(faces_, vertices.size());
 }
 
-/// Open surfaces only.
+/// Finds the seams of an open surface.
 void LatticeSnapper::find_seams(std::span<const Vec3f> vertices, double bounding_radius) {
     joined_vertices_ = join_near_vertices(vertices, *open_vertices_, seam_width(bounding_radius));
 }
@@ -117,8 +118,8 @@ void LatticeSnapper::snap_valid(std::span<const Vec3f> vertices, const Vec3f& wa
     require_usable(radius);
     snap_around(vertices, wanted_centre, radius, result);
     const double step = centre_step(result);
-    // Along the curve (t, t^2, t^3) a plane or a line excludes at most three places, so this ends; the first
-    // try nearly always succeeds.
+    // A plane or a line excludes at most three points of the curve (t, t^2, t^3), so the loop ends; the first
+    // attempt nearly always succeeds.
     for (double t = 1; touches_origin(result); ++t) {
         const Vec3f centre(Vec3d(wanted_centre) + Vec3d{t, t * t, t * t * t} * step);
         snap_around(vertices, centre, enclosing_radius(points, centre), result);
@@ -141,7 +142,7 @@ void LatticeSnapper::snap_around(std::span<const Vec3f> vertices, const Vec3f& c
     for (std::size_t i = 0; i < faces_.size(); ++i) {
         const Triangle face = faces_[i];
         result.faces[kept] = face;
-        result.face_numbers[kept] = static_cast<std::uint32_t>(i); // at most kMostFaces
+        result.face_numbers[kept] = static_cast<std::uint32_t>(i); // smaller than kMostFaces
         kept += is_collapsed(result.corners(static_cast<std::uint32_t>(kept))) ? 0 : 1;
     }
     result.faces.resize(kept);

@@ -19,12 +19,12 @@ namespace echinus {
 using LatticePoint = Vec3<std::int64_t>;
 
 /// Half the extent of the lattice: a bounding sphere of radius R is snapped to integers in [-2^19, 2^19], in
-/// steps of R / 2^19 = 1.9e-6 R. Sums of products of three coordinates then stay below 2^62: int64 decides
+/// steps of R / 2^19 = 1.9e-6 R. Sums of products of three coordinates then stay below 2^62, so int64 decides
 /// every sign.
 inline constexpr std::int64_t kLatticeExtent = std::int64_t{1} << 19;
 
-/// Position and step of a lattice. Mesh and particles are snapped by the same arithmetic, so a particle on a
-/// vertex stays on it.
+/// Position and step of a lattice. Mesh and particles are snapped by the same arithmetic, so a particle at a
+/// vertex is snapped to the same point as the vertex.
 struct LatticeFrame {
     Vec3d centre;    ///< C, local; the lattice's origin
     double step = 0; ///< length of one lattice step, R / kLatticeExtent
@@ -35,7 +35,7 @@ struct LatticeFrame {
         : centre(centre_), step(static_cast<double>(radius) / static_cast<double>(kLatticeExtent)),
           inverse_step(1 / step) {}
 
-    /// In lattice steps, not rounded.
+    /// Converts to lattice steps, without rounding.
     Vec3d to_lattice(const Vec3f& point_local) const { return (Vec3d(point_local) - centre) * inverse_step; }
     Vec3d to_local(const Vec3d& place) const { return centre + place * step; }
 };
@@ -47,7 +47,7 @@ inline LatticePoint rounded(const Vec3d& place) {
 
 /// A unit vector scaled to the lattice's extent and snapped: the direction of a ray.
 LatticePoint lattice_direction(const Vec3d& unit);
-/// The same for many.
+/// The same for many unit vectors.
 std::vector<LatticePoint> lattice_directions(const std::vector<Vec3d>& units);
 
 /// A mesh on the integer lattice around its centre: the input of all exact predicates.
@@ -57,7 +57,7 @@ struct LatticeMesh {
     LatticeFrame frame;
     std::vector<LatticePoint> vertices; ///< [vertex_count] as in the mesh
     /// Faces whose three corners are different lattice points, and their numbers in the mesh. The dropped
-    /// faces had no area on the lattice; a closed surface stays closed without them.
+    /// faces have no area on the lattice; a closed surface stays closed without them.
     std::vector<Triangle> faces;
     std::vector<std::uint32_t> face_numbers;
 
@@ -68,14 +68,14 @@ struct LatticeMesh {
     }
 };
 
-/// Do two corners lie on one point of the lattice?
+/// Do two corners have the same lattice point?
 inline bool is_collapsed(const std::array<LatticePoint, 3>& corners) {
     return corners[0] == corners[1] || corners[1] == corners[2] || corners[2] == corners[0];
 }
 
-/// Snaps successive poses of a deforming mesh with fixed faces to lattices. Keeps memory and the data that
-/// depend on the faces alone from one call to the next. Corners on both sides of a seam (mesh/seams.hpp) get
-/// one lattice point, so that none of its rounding makes a hole.
+/// Snaps successive poses of a deforming mesh with fixed faces to lattices. It keeps memory and the data that
+/// depend only on the faces from one call to the next. Corners on both sides of a seam (mesh/seams.hpp) get
+/// the same lattice point, so that the rounding of a seam never opens a hole.
 class LatticeSnapper {
   public:
     /// @param faces  must outlive the snapper
@@ -85,14 +85,14 @@ class LatticeSnapper {
     /// @pre snap() was called
     bool faces_are_closed() const { return open_vertices_->empty(); }
 
-    /// Snaps the mesh around the centre of its bounding sphere. Where that centre lies on a face or on the
-    /// line of an edge, so that no small turn could make its rays miss them, it moves by whole lattice steps
-    /// until it does not.
+    /// Snaps the mesh around the centre of its bounding sphere. If that centre lies on a face or on the line
+    /// of an edge, so that no small rotation could make its rays miss them, it is moved by whole lattice
+    /// steps until it does not.
     /// @param result  becomes the lattice mesh
-    /// @throws Error InvalidMesh as inspect() does, or when the bounding radius is 0 or outside [1e-15, 1e15]
+    /// @throws Error InvalidMesh as inspect() does, or if the bounding radius is 0 or outside [1e-15, 1e15]
     void snap(std::span<const Vec3f> vertices, LatticeMesh& result);
 
-    /// The same around another centre; the radius grows until it holds every vertex.
+    /// The same around a given centre; the radius grows until the sphere contains every vertex.
     void snap(std::span<const Vec3f> vertices, const Vec3f& centre, LatticeMesh& result);
 
   private:
@@ -106,16 +106,16 @@ class LatticeSnapper {
     std::optional<UsedVertices> used_; ///< not known before the first pose
     std::vector<Vec3f> positions_;
     std::optional<std::vector<std::uint32_t>> open_vertices_; ///< not known before the first pose
-    std::vector<std::uint32_t> joined_vertices_;              ///< [open_vertices_.size()] of the pose
+    std::vector<std::uint32_t> joined_vertices_; ///< [open_vertices_.size()] for the current pose
 };
 
 /// LatticeSnapper::snap() of a single mesh.
 LatticeMesh snap_to_lattice(const TriangleMesh& mesh);
 LatticeMesh snap_to_lattice(const TriangleMesh& mesh, const Vec3f& centre);
 
-/// Snaps a mesh to the lattice of a low-cost centre. Pattern search from the bounding sphere's centre, with
-/// steps of a quarter to a sixteenth of the radius (Hooke and Jeeves, "Direct Search Solution of Numerical
-/// and Statistical Problems", 1961). Evaluates 19 costs.
+/// Snaps a mesh to the lattice of a low-cost centre, found by a pattern search from the bounding sphere's
+/// centre with steps of a quarter to a sixteenth of the radius (Hooke and Jeeves, "Direct Search Solution of
+/// Numerical and Statistical Problems", 1961). Evaluates 19 costs.
 /// @param cost_of  a pure function of the lattice
 /// @param best     becomes the lattice mesh
 /// @throws Error as LatticeSnapper::snap()

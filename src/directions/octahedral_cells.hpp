@@ -10,23 +10,23 @@
 
 namespace echinus {
 
-/// |x| + |y| + |z|, the radial coordinate of octahedral maps. Faces stay flat in it within an octant.
+/// |x| + |y| + |z|, the radial coordinate of octahedral maps. Within an octant, faces stay flat in it.
 inline std::int64_t l1_norm(const LatticePoint& p) {
     return std::abs(p.x) + std::abs(p.y) + std::abs(p.z);
 }
 
-/// No place of a LatticeMesh has a larger one: in its sphere it is at most sqrt(3) kLatticeExtent, and
-/// snapping adds half a step on each axis.
+/// The largest L1 norm of a point of a LatticeMesh: within its sphere it is at most sqrt(3) kLatticeExtent,
+/// and snapping adds up to half a step on each axis.
 inline constexpr std::int64_t kMostL1Norm = 908'095;
 static_assert((2 * kMostL1Norm - 3) * (2 * kMostL1Norm - 3) >= 12 * kLatticeExtent * kLatticeExtent);
 
-/// Directions on the octahedron |x| + |y| + |z| = 1, each of its eight sides cut into n^2 triangles by the
-/// planes through the origin where n |x| / (|x| + |y| + |z|), and the same of y and z, is a whole number.
+/// Directions on the octahedron |x| + |y| + |z| = 1. Each of its eight sides is cut into n^2 triangles by the
+/// planes through the origin on which n |x| / (|x| + |y| + |z|) is an integer, and likewise for y and z.
 ///
-/// Square (i, j) of side 1/n holds the triangle *up*, below its diagonal, and, except for the last square of
-/// each row, the triangle *down*, above it. Cells are numbered by octant, then i, then j, then up before
-/// down. A cell is cut into 16 *parts* in the same way, a quarter as wide and numbered in the same order; a
-/// *down* cell is first rotated by half a turn.
+/// Square (i, j) of side 1/n consists of the triangle *up*, below its diagonal, and, except in the last
+/// square of each row, of the triangle *down*, above it. Cells are numbered by octant, then i, then j, then
+/// up before down. A cell is cut into 16 *parts* in the same way, a quarter as wide and numbered in the same
+/// order; for this, a *down* cell is first rotated by half a turn.
 class OctahedralCells {
   public:
     static constexpr std::int32_t kPartsPerSide = 4;
@@ -39,7 +39,7 @@ class OctahedralCells {
         return std::size_t{8} * static_cast<std::size_t>(n_) * static_cast<std::size_t>(n_);
     }
 
-    /// Bits 0, 1, 2 are set where x, y, z is negative.
+    /// Bits 0, 1 and 2 are set if x, y and z, respectively, are negative.
     static std::uint32_t octant_of(const LatticePoint& p) {
         return (p.x < 0 ? 1U : 0U) | (p.y < 0 ? 2U : 0U) | (p.z < 0 ? 4U : 0U);
     }
@@ -64,7 +64,8 @@ class OctahedralCells {
     Triangle triangle(std::uint32_t cell) const {
         const auto cells_per_octant = static_cast<std::uint32_t>(n_ * n_);
         const std::uint32_t in_octant = cell % cells_per_octant;
-        // The rows before row i hold i (2n - i) cells, so in_octant < n^2 - (n - i)^2 for all rows after it.
+        // The rows before row i contain i (2n - i) cells, so in_octant < n^2 - (n - i)^2 for all rows after
+        // it.
         const auto i =
             n_ - truncated_to<std::int32_t>(std::ceil(std::sqrt(double(cells_per_octant - in_octant))));
         const auto in_row = static_cast<std::int32_t>(in_octant) - i * (2 * n_ - i);
@@ -74,7 +75,7 @@ class OctahedralCells {
     /// The part that contains a cell's middle.
     static constexpr std::uint32_t middle_part() { return index_in_triangle(kPartsPerSide, 1, 1, false); }
 
-    /// The direction of a cell's middle, on no wall. @pre the cell exists
+    /// The direction of a cell's middle, which is on no wall. @pre the cell exists
     LatticePoint middle(std::uint32_t cell) const {
         const auto [octant, i, j, down] = triangle(cell);
         const std::int64_t third = down ? 2 : 1;
@@ -83,7 +84,7 @@ class OctahedralCells {
         return mirrored(octant, LatticePoint{3 * i + third, 3 * j + third, 3 * k + third} * scale);
     }
 
-    /// A cell's corners on the octahedron.
+    /// The corners of a cell on the octahedron.
     std::array<Vec3d, 3> corners(std::uint32_t cell) const {
         const auto [octant, i, j, down] = triangle(cell);
         const auto corner = [&, octant = octant](std::int32_t x, std::int32_t y) {
@@ -97,10 +98,10 @@ class OctahedralCells {
         std::uint32_t cell, part;
     };
 
-    /// The cell of a direction; for one on a wall, one of the cells that share it. As exact as integers: a
-    /// quotient of an integer below 2^30 by one below 2^21 differs from the next whole number by at least
-    /// 2^-21 or not at all, and the rounding errors below are far smaller than the 2^-30 that is added.
-    /// @param p  components within kLatticeExtent; the origin stands for (e, e^2, e^3), as everywhere
+    /// The cell of a direction; for one on a wall, one of the cells that share it. As exact as integer
+    /// arithmetic: a quotient of an integer below 2^30 and one below 2^21 differs from the next integer by at
+    /// least 2^-21 or not at all, and the rounding errors below are far smaller than the 2^-30 that is added.
+    /// @param p  components within kLatticeExtent; the origin counts as (e, e^2, e^3), as everywhere
     Place locate(const LatticePoint& p) const {
         constexpr double kNudge = 0x1p-30;
         const std::int32_t fine_n = kPartsPerSide * n_;
@@ -112,8 +113,7 @@ class OctahedralCells {
         auto i = truncated_to<std::int32_t>(along_x);
         auto j = truncated_to<std::int32_t>(along_y);
         std::int32_t down = along_x + along_y - (i + j) > 1 + 4 * kNudge ? 1 : 0;
-        if (i + j == fine_n) { // a corner of the grid on the octant's edge; step back into a cell that
-                               // touches it
+        if (i + j == fine_n) { // a corner of the grid on the octant's edge: step back into an adjacent cell
             if (i > 0)
                 --i;
             else

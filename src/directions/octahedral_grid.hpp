@@ -16,9 +16,10 @@
 
 namespace echinus {
 
-/// Directions on the octahedron |x| + |y| + |z| = 1, unfolded into a square as an octahedral map of unit
-/// vectors is (Cigolle et al., "A Survey of Efficient Representations for Independent Unit Vectors", JCGT
-/// 2014, section 3): z >= 0 is the diamond in its middle, the sides below are folded out into its corners.
+/// Directions on the octahedron |x| + |y| + |z| = 1, unfolded into a square like an octahedral map of unit
+/// vectors (Cigolle et al., "A Survey of Efficient Representations for Independent Unit Vectors", JCGT 2014,
+/// section 3): the half z >= 0 is the diamond in its middle, and the sides below are folded out into its
+/// corners.
 ///
 ///     +-------+-------+    Columns count along U from 0 to 2n, rows along V; (n, n) is +z, the four corners
 ///     |  -z / | \ -z  |    are -z. A side's edge is cut into n, which makes squares of side 1; each is cut
@@ -30,8 +31,8 @@ namespace echinus {
 ///     |  -z \ | / -z  |
 ///     +-------+-------+
 ///
-/// The radial coordinate is the L1 radius |x| + |y| + |z|. Its reciprocal is affine over a plane and is
-/// therefore the interpolated quantity (as depth buffers do with 1/z).
+/// The radial coordinate is the L1 norm |x| + |y| + |z|. Its reciprocal is affine over a plane and is
+/// therefore the interpolated quantity (as depth buffers use 1/z).
 class OctahedralGrid {
   public:
     explicit OctahedralGrid(std::uint32_t divisions)
@@ -42,7 +43,7 @@ class OctahedralGrid {
     std::size_t direction_count() const { return std::size_t{width_} * width_; }
     std::uint32_t index(std::uint32_t column, std::uint32_t row) const { return row * width_ + column; }
 
-    /// The index that all samples of one direction share.
+    /// The index of the sample that represents all samples with the same direction.
     std::uint32_t canonical(std::uint32_t column, std::uint32_t row) const {
         const std::uint32_t last = width_ - 1;
         if (column == 0 || column == last) row = std::min(row, last - row);
@@ -50,7 +51,7 @@ class OctahedralGrid {
         return index(column, row);
     }
 
-    /// A sample as whole numbers: n times its point on the octahedron, without rounding.
+    /// A sample in integers: n times its point on the octahedron, without rounding.
     LatticePoint sample(std::uint32_t column, std::uint32_t row) const {
         const std::int64_t x = static_cast<std::int64_t>(column) - n_,
                            y = static_cast<std::int64_t>(row) - n_;
@@ -59,11 +60,11 @@ class OctahedralGrid {
         return {x > 0 ? n_ - std::abs(y) : std::abs(y) - n_, y > 0 ? n_ - std::abs(x) : std::abs(x) - n_, z};
     }
 
-    /// Vectors of L1 radius 1 to all samples by index.
+    /// Vectors with L1 norm 1 to all samples by index.
     std::vector<Vec3d> directions() const {
         return for_all_samples<Vec3d>([this](const LatticePoint& p) { return Vec3d(p) * (1.0 / n_); });
     }
-    /// The same directions exactly, as long as the lattice allows.
+    /// The same directions exactly, scaled up as far as the lattice allows.
     std::vector<LatticePoint> lattice_directions() const {
         return for_all_samples<LatticePoint>(
             [this](const LatticePoint& p) { return p * (kLatticeExtent / n_); });
@@ -77,16 +78,15 @@ class OctahedralGrid {
     }
 
     static double radial_norm(const Vec3d& d) { return std::fabs(d.x) + std::fabs(d.y) + std::fabs(d.z); }
-    /// The largest radial coordinate in a sphere: sqrt(3) times the radius, and a little more.
+    /// The largest radial coordinate in a sphere: sqrt(3) times the radius, rounded up.
     static float largest_entry(float radius) { return radius * 1.7320509F; }
 
     struct Coordinates {
         float along_u, along_v; ///< in [0, 2n]
-        float stretch;          ///< Euclidean per L1 length along this ray
+        float stretch;          ///< Euclidean length divided by L1 length along this ray
     };
 
-    /// @param d  any length, zero included (then +z). Must be finite, otherwise the coordinates are
-    /// meaningless
+    /// @param d  of any length; 0 counts as +z. Must be finite, otherwise the coordinates are meaningless
     Coordinates coordinates_of(const Vec3f& d) const {
         const auto n = static_cast<float>(n_);
         const float ax = std::fabs(d.x), ay = std::fabs(d.y);
@@ -99,12 +99,12 @@ class OctahedralGrid {
     }
 
     struct Cell {
-        /// Direction indices of the square's corners (0,0), (1,0), (0,1), (1,1), the first number along U.
-        /// The one outside the triangle is replaced by one of the triangle's corners.
+        /// Direction indices of the square's corners (0,0), (1,0), (0,1), (1,1), the first coordinate along
+        /// U. The one outside the triangle is replaced by one of the triangle's corners.
         std::array<std::uint32_t, 4> corners;
         float u, v;    ///< in [0, 1], within the square
         bool mirrored; ///< the diagonal runs from (0,0) to (1,1), and not from (1,0) to (0,1)
-        float rest;    ///< weight of the corner on the near side of the diagonal; below 0: beyond it
+        float rest; ///< weight of the corner on the near side of the diagonal; negative beyond the diagonal
         std::int32_t i, j;
 
         bool beyond() const { return rest < 0; }
@@ -127,7 +127,7 @@ class OctahedralGrid {
     }
     Cell locate(const Vec3f& d) const { return cell_at(coordinates_of(d)); }
 
-    /// The barycentric weights in the triangle; 0 for the fourth corner.
+    /// The barycentric weights in the triangle; 0 for the corner outside it.
     static std::array<float, 4> weights(const Cell& cell) {
         const float u = cell.mirrored ? 1 - cell.u : cell.u;
         const bool beyond = cell.beyond();
@@ -144,7 +144,7 @@ class OctahedralGrid {
             if (w[corner] > w[best]) best = corner;
         return best;
     }
-    /// The samples that interpolation uses: all but the fourth corner.
+    /// The samples that interpolation uses: all except the corner outside the triangle.
     static bool is_sample(const Cell& cell, std::size_t corner) { return corner != cell.doubled(); }
 
     struct Derivatives {
@@ -157,13 +157,13 @@ class OctahedralGrid {
         return {{-u[1], -u[0], -u[3], -u[2]}, {v[1], v[0], v[3], v[2]}};
     }
 
-    // Between samples 1/t is affine. Entries below 2^-20 R, half a step of the lattice, count as 2^-20 R.
+    // Between samples 1/t is affine. Entries below 2^-20 R, half a lattice step, count as 2^-20 R.
     static float interpolant(float entry, float radius) { return 1 / std::max(entry, radius * 0x1p-20F); }
     static float interpolant_at(const Vec3d& d) { return static_cast<float>(1 / radial_norm(d)); }
-    /// The distance along a ray, Euclidean.
+    /// The Euclidean distance along a ray.
     static float distance_of(float interpolated, const Coordinates& at) { return at.stretch / interpolated; }
     static bool is_farther(float interpolant, float other) { return interpolant < other; }
-    /// An entry after its interpolant moved by `shift`.
+    /// An entry whose interpolant was moved by `shift`.
     static float moved(float entry, float shift, bool outward) {
         if (!outward) return 1 / (1 / entry + shift);
         const float rest = 1 / entry - shift;
@@ -171,7 +171,7 @@ class OctahedralGrid {
     }
 
     /// The gradient of the plane m.x = 1 that a triangle's interpolants span, times the distance.
-    /// @param value  the interpolated reciprocal, slope_u and slope_v its derivatives
+    /// @param value  the interpolated reciprocal; slope_u and slope_v are its derivatives
     Vec3f surface_gradient(const Vec3f&, const Cell& cell, float distance, float value, float slope_u,
                            float slope_v) const {
         const auto n = static_cast<float>(n_);
@@ -193,9 +193,9 @@ class OctahedralGrid {
     static Vec3f from_grid(const Vec3f& v) { return v; }
     static Vec3d to_grid(const Vec3d& v) { return v; }
 
-    /// Calls `visit(corners)` for each small triangle, its indices counter-clockwise seen from outside, as
-    /// unfolding keeps the sense of rotation. Samples that appear more than once have one index, which closes
-    /// the square's border.
+    /// Calls `visit(corners)` for each small triangle, with the indices of its corners counter-clockwise seen
+    /// from outside, since unfolding preserves orientation. Samples that appear several times have one index,
+    /// so that the square's border is closed.
     template <typename Visit>
     void for_each_facet(const Visit& visit) const {
         const auto n = static_cast<std::uint32_t>(n_);
@@ -203,17 +203,18 @@ class OctahedralGrid {
             for (std::uint32_t i = 0; i < 2 * n; ++i) {
                 const std::array<std::uint32_t, 4> q{canonical(i, j), canonical(i + 1, j),
                                                      canonical(i + 1, j + 1), canonical(i, j + 1)};
-                const std::size_t turn = (i >= n) != (j >= n) ? 1 : 0; // the way the diagonal runs
+                const std::size_t turn =
+                    (i >= n) != (j >= n) ? 1 : 0; // depends on the direction of the diagonal
                 visit(std::array{q[turn], q[turn + 1], q[(turn + 3) % 4]});
                 visit(std::array{q[turn + 1], q[(turn + 2) % 4], q[(turn + 3) % 4]});
             }
     }
 
   private:
-    /// Does a cell lie on the side of its square's diagonal that faces the middle of the unfolded square?
+    /// Does a cell lie on the side of its square's diagonal towards the middle of the unfolded square?
     bool is_towards_middle(const Cell& cell) const {
-        // The corner on the near side of the diagonal is (0, 0), mirrored (1, 0); it faces the middle above
-        // the middle row.
+        // The corner on the near side of the diagonal is (0, 0) or, if mirrored, (1, 0); it points towards
+        // the middle in squares above the middle row.
         return (cell.j >= n_) != cell.beyond();
     }
 

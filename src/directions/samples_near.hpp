@@ -18,17 +18,18 @@
 
 namespace echinus {
 
-/// A range of colatitudes and longitudes (grid frame, radians) that contains every direction in which the
-/// origin sees a face: the range of a cap around the face's three corners. It only has to be large enough, so
-/// the C library's functions suffice; which of its directions meet the face is decided exactly afterwards.
+/// A range of colatitudes and longitudes (grid frame, radians) that contains every direction in which a face
+/// is seen from the origin: the range of a cap around the face's three corners. It only has to be large
+/// enough, so the functions of the C library suffice; which of its directions meet the face is decided
+/// exactly afterwards.
 struct DirectionCap {
     double theta_min, theta_max;
-    double phi_middle, phi_half_width; ///< a half width of pi or more is the whole circle
+    double phi_middle, phi_half_width; ///< a half width of pi or more means the whole circle
 
-    /// Far above the rounding of these lines and of snapping a direction (2e-6 rad), far below a cell.
+    /// Far more than the rounding here and that of snapping a direction (2e-6 rad), but far less than a cell.
     static constexpr double kMargin = 1e-5;
 
-    /// @param margin  larger where the frame is scaled and directions were snapped before
+    /// @param margin  must be larger if the frame is scaled and directions were snapped before
     explicit DirectionCap(const std::array<Vec3d, 3>& corners, double margin = kMargin) {
         constexpr double kPiDouble = std::numbers::pi;
 
@@ -38,8 +39,8 @@ struct DirectionCap {
         const Vec3d axis = sum * (1 / std::max(length(sum), 1e-300));
         double cosine = 1;
         for (const Vec3d& unit : units) cosine = std::min(cosine, dot(axis, unit));
-        // A cap of a quarter turn or more need not contain the great circles between its points: take all
-        // directions.
+        // A cap of a quarter turn or more need not contain the great circles between its points, so it is
+        // widened to all directions.
         const double radius = cosine > 0.01 ? std::acos(std::min(cosine, 1.0)) + margin : kPiDouble;
 
         const double theta = std::atan2(std::hypot(axis.x, axis.y), axis.z);
@@ -52,7 +53,7 @@ struct DirectionCap {
     }
 };
 
-/// Calls `visit(index)` for the samples of a grid inside a cap, and those at most `reach` cells outside it
+/// Calls `visit(index)` for the samples of a grid that are inside a cap or at most `reach` cells outside it
 /// along phi and theta.
 template <typename Visit>
 void for_each_sample_in(const SphericalGrid& grid, const DirectionCap& cap, double reach,
@@ -83,7 +84,7 @@ void for_each_sample_in(const SphericalGrid& grid, const DirectionCap& cap, doub
         }
 }
 
-/// Calls `visit(index)` for a superset of the samples that lie inside a face's cone or at most `reach` cells
+/// Calls `visit(index)` for a superset of the samples that are inside a face's cone or at most `reach` cells
 /// outside it.
 template <typename Visit>
 void for_each_sample_near(const SphericalGrid& grid, const std::array<LatticePoint, 3>& face, double reach,
@@ -93,9 +94,9 @@ void for_each_sample_near(const SphericalGrid& grid, const std::array<LatticePoi
     for_each_sample_in(grid, cap, reach, visit);
 }
 
-/// The same in the scaled frame, in which the samples are those of a sphere: the face is scaled too. Angles
-/// there may be larger than in the mesh's frame, by at most the inverse of the smallest scale, hence the
-/// margin.
+/// The same for an ellipsoidal grid. In its scaled frame the samples are those of a sphere, so the face is
+/// scaled, too. Angles there may be larger than in the mesh's frame, by up to the inverse of the smallest
+/// scale; hence the margin.
 template <typename Visit>
 void for_each_sample_near(const EllipsoidalGrid& grid, const std::array<LatticePoint, 3>& face, double reach,
                           const Visit& visit) {
@@ -107,16 +108,16 @@ void for_each_sample_near(const EllipsoidalGrid& grid, const std::array<LatticeP
 }
 
 /// A convex polygon with few corners, in lattice steps, to be cut by planes through the origin. Near the
-/// origin its directions are lost in rounding: that a face keeps off the origin does not mean that it keeps
-/// off by more than the rounding of a corner.
+/// origin its directions are lost in rounding: a face that avoids the origin may still be nearer to it than
+/// the rounding error of a corner.
 class ClippedFace {
   public:
     explicit ClippedFace(const std::array<Vec3d, 3>& corners) : size_(3) {
         std::copy(corners.begin(), corners.end(), corners_.begin());
     }
 
-    /// Keeps the part with n.p >= 0, and what rounding may have put beyond that.
-    /// @param n  of a length of about 1
+    /// Keeps the part with n.p >= 0, and anything that rounding may have moved beyond it.
+    /// @param n  of approximately unit length
     void cut(const Vec3d& n) {
         std::array<Vec3d, kMost> kept;
         std::size_t kept_size = 0;
@@ -133,7 +134,7 @@ class ClippedFace {
     }
 
     bool empty() const { return size_ == 0; }
-    /// Does it come so near to the origin that its corners do not tell in which directions it lies?
+    /// Is it so near the origin that its corners do not determine in which directions it lies?
     bool is_all_around() const {
         return std::any_of(begin(), end(), [](const Vec3d& p) { return dot(p, p) < kNear * kNear; });
     }
@@ -141,10 +142,11 @@ class ClippedFace {
     const Vec3d* end() const { return corners_.data() + size_; }
 
   private:
-    /// In lattice steps, of which a lattice has 2^20 on each axis: doubles of them are rounded by 2^-34, and
-    /// each cut adds a few times that.
+    /// In lattice steps. A lattice has 2^20 of them on each axis, so doubles are rounded by 2^-34, and each
+    /// cut adds a few times that.
     static constexpr double kRounding = 0x1p-28;
-    /// In lattice steps. At this distance kRounding is 2^-28 radians, far below all margins of samples.
+    /// In lattice steps. At this distance kRounding corresponds to 2^-28 radians, far below all margins of
+    /// samples.
     static constexpr double kNear = 1;
 
     static constexpr std::size_t kMost = 3 + 4 + 1; // each of up to four planes adds at most one corner
@@ -152,20 +154,20 @@ class ClippedFace {
     std::size_t size_;
 };
 
-/// Calls `visit(index)` for a superset of the samples of one side of the cube that lie inside a face's cone
-/// or at most `reach` cells outside it. Each at most once. Which samples meet the face is decided exactly
-/// afterwards, so the C library's functions suffice here.
+/// Calls `visit(index)`, at most once each, for a superset of the samples of one side of the cube that are
+/// inside a face's cone or at most `reach` cells outside it. Which samples meet the face is decided exactly
+/// afterwards, so the functions of the C library suffice here.
 template <typename Visit>
 void for_each_sample_of_side_near(const CubeGrid& grid, std::uint32_t side,
                                   const std::array<LatticePoint, 3>& face, double reach, const Visit& visit) {
-    constexpr double kMargin = 1e-5; // radians; far above the rounding of these lines and of the lattice
+    constexpr double kMargin = 1e-5; // radians; far more than the rounding errors here and of the lattice
     const double cells_per_radian = 2 * grid.divisions() / std::numbers::pi;
     std::array<Vec3d, 3> corners;
     for (std::size_t c = 0; c < 3; ++c) {
         corners[c] = CubeGrid::to_side(side, Vec3d(face[c]));
         if (CubeGrid::is_negative(side)) corners[c].z = -corners[c].z;
     }
-    // The part that the side sees, and a little more.
+    // The part that is visible from this side, and slightly more.
     ClippedFace part(corners);
     const double half_opening = std::numbers::pi / 4 + reach / cells_per_radian + kMargin;
     const double across = std::cos(half_opening), along = std::sin(half_opening);
@@ -204,8 +206,8 @@ void for_each_sample_near(const CubeGrid& grid, const std::array<LatticePoint, 3
         for_each_sample_of_side_near(grid, side, face, reach, visit);
 }
 
-/// Visits the samples of one octant near a face. Each sample belongs to one octant: those on coordinate
-/// planes to the positive side.
+/// Visits the samples of one octant near a face. Each sample belongs to one octant: those on a coordinate
+/// plane belong to its positive side.
 template <typename Visit>
 class OctantSamples {
   public:
@@ -215,7 +217,7 @@ class OctantSamples {
 
     void visit_near(const std::array<LatticePoint, 3>& face, double reach) const {
         ClippedFace part({folded(face[0]), folded(face[1]), folded(face[2])});
-        // Slightly more than the octant, so that a face that touches it from outside is not lost.
+        // Cuts slightly outside the octant, so that a face that touches it from outside is not lost.
         const double tolerance = (reach + kMargin) / n_;
         const Vec3d beside = Vec3d{1, 1, 1} * tolerance;
         part.cut(Vec3d{1, 0, 0} + beside);
@@ -243,7 +245,7 @@ class OctantSamples {
     }
 
   private:
-    static constexpr double kMargin = 1e-3; // cells; far above the rounding of these lines
+    static constexpr double kMargin = 1e-3; // cells; far more than the rounding errors here
 
     std::int32_t at_least(double value) const {
         return truncated_to<std::int32_t>(std::clamp(std::ceil(value), 0.0, n_ + 1.0));
@@ -252,7 +254,7 @@ class OctantSamples {
         return truncated_to<std::int32_t>(std::clamp(std::floor(value), -1.0, double(n_)));
     }
 
-    /// Maps into the octant of positive coordinates.
+    /// Mirrors a point into the octant of positive coordinates.
     Vec3d folded(const LatticePoint& p) const {
         return {static_cast<double>(negative_x_ ? -p.x : p.x), static_cast<double>(negative_y_ ? -p.y : p.y),
                 static_cast<double>(negative_z_ ? -p.z : p.z)};
@@ -262,7 +264,7 @@ class OctantSamples {
         for (std::int32_t x = 0; x <= n_; ++x)
             for (std::int32_t y = 0; y <= n_ - x; ++y) visit_if_owned(x, y);
     }
-    /// The sample n (|x|, |y|) of this octant's side.
+    /// Visits the sample n (|x|, |y|) of this octant's side.
     void visit_if_owned(std::int32_t x, std::int32_t y) const {
         if (negative_z_) { // folded outwards
             if (x + y >= n_) return;
@@ -282,8 +284,8 @@ class OctantSamples {
     const Visit& visit_;
 };
 
-/// Calls `visit(index)` for a superset of the samples that lie inside a face's cone or at most `reach` cells
-/// outside it. Each at most once.
+/// Calls `visit(index)`, at most once each, for a superset of the samples that are inside a face's cone or at
+/// most `reach` cells outside it.
 template <typename Visit>
 void for_each_sample_near(const OctahedralGrid& grid, const std::array<LatticePoint, 3>& face, double reach,
                           const Visit& visit) {

@@ -18,11 +18,11 @@
 namespace echinus {
 
 /// The paper's grid of directions (section 2.1): longitude phi_i = 2 pi i / N_phi, periodic, and colatitude
-/// theta_j = pi (j + 1/2) / N_theta. The paper leaves open where along theta its samples lie; the half keeps
-/// them off the poles, where a whole row would be one direction.
+/// theta_j = pi (j + 1/2) / N_theta. The paper does not specify the positions of its samples along theta; the
+/// offset of one half keeps them away from the poles, where a whole row would be one direction.
 ///
 /// Inside this class, vectors are in the grid's frame, whose z axis is the pole axis: to_grid() converts to
-/// it.
+/// that frame.
 class SphericalGrid : public BilinearGrid {
   public:
     SphericalGrid(std::uint32_t longitude_count, std::uint32_t colatitude_count, PoleAxis pole_axis)
@@ -78,8 +78,8 @@ class SphericalGrid : public BilinearGrid {
         float along_theta; ///< in [-1/2, N_theta - 1/2]
     };
 
-    /// @param d_grid  any length, zero included (then longitude 0, colatitude 0), in the grid's frame. Must
-    /// be finite, otherwise the coordinates are meaningless
+    /// @param d_grid  of any length, in the grid's frame; 0 counts as longitude 0, colatitude 0. Must be
+    ///                finite, otherwise the coordinates are meaningless
     Coordinates coordinates_of(const Vec3f& d_grid) const {
         const float horizontal = std::sqrt(d_grid.x * d_grid.x + d_grid.y * d_grid.y);
         const float phi = atan2_polynomial(d_grid.y, d_grid.x);
@@ -88,7 +88,7 @@ class SphericalGrid : public BilinearGrid {
                 theta * (static_cast<float>(colatitude_count_) / kPi) - 0.5F};
     }
 
-    /// u runs along phi, v along theta.
+    /// The cell's u is along phi, v along theta.
     Cell cell_at(const Coordinates& at) const {
         const std::int32_t phi_floor = floor_to_int(at.along_phi);
         const std::int32_t j0 = floor_to_int(at.along_theta);
@@ -99,7 +99,7 @@ class SphericalGrid : public BilinearGrid {
                 at.along_theta - static_cast<float>(j0)};
     }
 
-    /// @param d_grid  as for coordinates_of()
+    /// @param d_grid  as in coordinates_of()
     Cell locate(const Vec3f& d_grid) const { return cell_at(coordinates_of(d_grid)); }
 
     /// The gradient of |x| - S(phi, theta) on the map's surface: e_r - S_theta / S e_theta - S_phi / (S sin
@@ -107,7 +107,7 @@ class SphericalGrid : public BilinearGrid {
     /// @param distance  S; slope_u and slope_v are its derivatives per cell
     Vec3f surface_gradient(const Vec3f& e_r, const Cell&, float distance, float, float slope_u,
                            float slope_v) const {
-        const float sine = std::sqrt(e_r.x * e_r.x + e_r.y * e_r.y); // of theta
+        const float sine = std::sqrt(e_r.x * e_r.x + e_r.y * e_r.y); // sine of theta
         if (!(sine > 0 && distance > 0)) return e_r; // on the pole axis longitude has no meaning
         const Vec3f e_phi{-e_r.y / sine, e_r.x / sine, 0};
         const Vec3f e_theta = cross(e_phi, e_r);
@@ -117,10 +117,10 @@ class SphericalGrid : public BilinearGrid {
         return e_r - e_theta * per_theta - e_phi * per_phi;
     }
 
-    /// Calls `visit(corners)` for the polygons between neighbouring samples, whose indices are
-    /// counter-clockwise seen from outside: with theta running down from the pole and phi counter-clockwise,
-    /// a cell's are (i, j), (i, j + 1), (i + 1, j + 1), (i + 1, j). The small polygons around the poles come
-    /// last.
+    /// Calls `visit(corners)` for the polygons between neighbouring samples, with the indices of the corners
+    /// counter-clockwise seen from outside. Since theta grows from the pole downwards and phi
+    /// counter-clockwise, the corners of a cell are (i, j), (i, j + 1), (i + 1, j + 1), (i + 1, j). The small
+    /// polygons around the poles come last.
     template <typename Visit>
     void for_each_facet(const Visit& visit) const {
         for (std::uint32_t j = 0; j + 1 < colatitude_count_; ++j)
@@ -146,11 +146,11 @@ class SphericalGrid : public BilinearGrid {
     CirclePoint colatitude_point(std::uint32_t j) const {
         return circle_point(2 * std::uint64_t{j} + 1, 4 * std::uint64_t{colatitude_count_});
     }
-    /// s lies in [-N/2, N/2], so one addition brings it back.
+    /// The index is in [-N/2, N/2], so one addition suffices.
     std::uint32_t wrap_longitude(std::int32_t i) const {
         return static_cast<std::uint32_t>(i < 0 ? i + static_cast<std::int32_t>(longitude_count_) : i);
     }
-    /// Beyond a pole the row continues at the opposite longitude (half a sample off where the count is odd).
+    /// Beyond a pole the row continues at the opposite longitude (half a sample off if the count is odd).
     std::uint32_t corner(std::uint32_t i, std::int32_t j) const {
         const auto last = static_cast<std::int32_t>(colatitude_count_) - 1;
         if (j >= 0 && j <= last) return index(i, static_cast<std::uint32_t>(j));
@@ -165,7 +165,7 @@ class SphericalGrid : public BilinearGrid {
     PoleAxis pole_axis_;
 };
 
-/// Componentwise.
+/// The componentwise product.
 template <typename T>
 Vec3<T> product(const Vec3<T>& a, const Vec3<T>& b) {
     return {a.x * b.x, a.y * b.y, a.z * b.z};
@@ -173,10 +173,10 @@ Vec3<T> product(const Vec3<T>& a, const Vec3<T>& b) {
 
 /// The paper's grid in a frame with scaled axes, g = S x, whose unit sphere is an ellipsoid in the mesh's
 /// frame: samples, cells and weights are those of the direction S x, and the radial coordinate is |S x|. Rays
-/// and planes stay rays and planes in both frames.
+/// and planes remain rays and planes in the other frame.
 class EllipsoidalGrid : public SphericalGrid {
   public:
-    /// Thinner meshes are treated as if they had this scale: rays are cast along lattice points, which lie
+    /// Thinner meshes are treated as if they had this scale: rays are cast along lattice points, which are
     /// farther apart in the scaled frame.
     static constexpr float kSmallestScale = 1.0F / 64;
 
@@ -203,7 +203,7 @@ class EllipsoidalGrid : public SphericalGrid {
         return echinus::lattice_directions(units);
     }
     /// The solid angle of each sample, up to a common factor: that of a small area of the scaled unit sphere
-    /// falls with the cube of its distance.
+    /// is inversely proportional to the cube of its distance.
     std::vector<double> solid_angle_weights() const {
         std::vector<double> result = SphericalGrid::solid_angle_weights();
         const std::vector<Vec3d> places = directions();
@@ -216,17 +216,17 @@ class EllipsoidalGrid : public SphericalGrid {
 
     double radial_norm(const Vec3d& d) const { return length(product(d, Vec3d(scale_))); }
     float interpolant_at(const Vec3d& d) const { return static_cast<float>(radial_norm(d)); }
-    /// No radial coordinate exceeds the distance. In a box with half edges proportional to 1 / scale, the
-    /// longest at most the radius, none exceeds that of the box's corner.
+    /// No radial coordinate exceeds the distance. In a box whose half edges are proportional to 1 / scale,
+    /// the longest being at most the radius, none exceeds that of the box's corner.
     float largest_entry(float radius) const {
         constexpr float kCorner = 1.7320509F; // of the unit cube: sqrt(3), rounded up
         return radius * std::min(1.0F, kCorner * smallest_scale());
     }
 
     struct Coordinates : SphericalGrid::Coordinates {
-        float stretch; ///< Euclidean per radial length along this ray
+        float stretch; ///< Euclidean length divided by radial length along this ray
     };
-    /// @param d_grid  as for SphericalGrid
+    /// @param d_grid  as in SphericalGrid
     Coordinates coordinates_of(const Vec3f& d_grid) const {
         const Vec3f g = product(d_grid, scale_in_grid_);
         const float radial = length(g);
