@@ -7,29 +7,29 @@
 #include <cstdint>
 
 /// Interpolation of the entries of the samples around a direction (paper section 2.2): bilinear between the
-/// four of a spherical grid, barycentric between the three of an octahedral one, one of which then counts
-/// twice, the second time with weight 0.
+/// four samples of a spherical grid, barycentric between the three of an octahedral one, of which one is then
+/// listed twice, the second time with weight 0.
 ///
 ///     v
 ///     |   2 --- 3        Corners, numbered as in the grids' Cell. The sample nearest to the query is the
-///     |   |   x |        *reference*; samples with another number of entries than it has are ignored.
+///     |   |   x |        *reference*; samples with a different number of entries are ignored.
 ///     |   0 --- 1
 ///     +---------- u
 ///
 /// The interpolated quantity is the grid's *interpolant* of an entry: the distance, or the reciprocal of the
-/// L1 radius.
+/// L1 norm.
 namespace echinus {
 
-/// The four samples around one direction and what each contributes.
+/// The four samples around one direction, and the contribution of each.
 template <typename Grid>
 struct Interpolation {
     typename Grid::Cell cell;
     std::array<std::uint32_t, 4>
-        first_entry;             ///< where each sample's entries begin; the reference's if ignored
-    std::array<float, 4> weight; ///< 0 for ignored samples; they add up to 1
+        first_entry; ///< where each sample's entries begin; for an ignored sample, those of the reference
+    std::array<float, 4> weight; ///< 0 for ignored samples; the sum is 1
     std::array<bool, 4> usable;
     float weight_sum;          ///< the sum of the usable samples' weights before normalisation
-    std::uint32_t entry_count; ///< of the reference sample, hence of all usable ones
+    std::uint32_t entry_count; ///< entry count of the reference sample, hence of all usable ones
 };
 
 template <typename Grid>
@@ -50,8 +50,9 @@ Interpolation<Grid> interpolation_at(const DistanceMapView& map, const Grid&,
         result.weight_sum += result.weight[corner];
     }
     const auto& usable = result.usable;
-    if (usable[0] && usable[1] && usable[2] && usable[3]) return result; // they add up to 1 already
-    for (float& weight : result.weight) weight /= result.weight_sum; // the reference's alone is 1/4 or more
+    if (usable[0] && usable[1] && usable[2] && usable[3]) return result; // the weights already add up to 1
+    for (float& weight : result.weight)
+        weight /= result.weight_sum; // the reference's weight alone is at least 1/4
     return result;
 }
 
@@ -61,7 +62,8 @@ float interpolant_at(const DistanceMapView& map, const Interpolation<Grid>& at, 
     return Grid::interpolant(entry_at(map, at.first_entry[corner] + k), map.radius);
 }
 
-/// The interpolated k-th interpolant. Monotone in k, since every usable sample is and rounding is monotone.
+/// The interpolated k-th interpolant. Monotone in k, since each usable sample's interpolants are and rounding
+/// is monotone.
 template <typename Grid>
 float interpolated(const DistanceMapView& map, const Interpolation<Grid>& at, std::uint32_t k) {
     float sum = 0;
@@ -71,10 +73,10 @@ float interpolated(const DistanceMapView& map, const Interpolation<Grid>& at, st
 }
 
 struct Slope {
-    float along_u, along_v; ///< of the interpolant per cell
+    float along_u, along_v; ///< derivatives of the interpolant per cell
 };
 
-/// The derivatives of interpolated() along u and v, ignored samples ignored (quotient rule).
+/// The derivatives of interpolated() along u and v, without ignored samples (quotient rule).
 /// @param value  interpolated(map, at, k)
 template <typename Grid>
 Slope slope_of_entry(const DistanceMapView& map, const Interpolation<Grid>& at, std::uint32_t k,

@@ -34,8 +34,8 @@ std::vector<std::size_t> entry_histogram(const DistanceMapView& map) {
 
 namespace {
 
-/// The scale that turns the mesh's box about the centre into a cube, unless it is thinner than the grid
-/// allows: the shortest half edge keeps its length, the others shrink to it.
+/// The scale that turns the mesh's box around the centre into a cube, unless the box is thinner than the grid
+/// allows: the shortest half edge keeps its length, the others are shortened to it.
 Vec3f scale_of(const LatticeMesh& lattice) {
     LatticePoint reach;
     for (const LatticePoint& v : lattice.vertices)

@@ -19,7 +19,7 @@ void check_sample_count(const Checker& checker, std::string_view field, std::uin
                         DistanceMapOptions::kMaxSampleCount);
 }
 
-/// Fields that only another grid needs are 0.
+/// Fields that the map's grid does not use must be 0.
 void check_counts(const Checker& checker, const DistanceMapView& map) {
     if (has_poles(map.grid)) {
         check_sample_count(checker, "longitude_count", map.longitude_count);
@@ -33,7 +33,7 @@ void check_counts(const Checker& checker, const DistanceMapView& map) {
     }
 }
 
-/// Only an ellipsoid's frame is scaled.
+/// Only the frame of an ellipsoidal grid may be scaled.
 void check_scale(const Checker& checker, const DistanceMapView& map) {
     const float least = map.grid == DirectionGrid::Ellipsoidal ? EllipsoidalGrid::kSmallestScale : 1.0F;
     for (const float scale : {map.scale.x, map.scale.y, map.scale.z})
@@ -47,14 +47,15 @@ void check_scalars(const Checker& checker, const DistanceMapView& map) {
     checker.check_enumerator("grid", map.grid, DirectionGrid::Ellipsoidal);
     check_counts(checker, map);
     check_scale(checker, map);
-    // Reciprocals and quotients of lengths must be finite: the bounds of a build, and room for rounding.
+    // Reciprocals and quotients of lengths must be finite; the range is that of a build, with allowance for
+    // rounding.
     if (map.grid != DirectionGrid::Spherical) checker.check_range("radius", map.radius, 1e-15F, 4e15F);
     checker.check_enumerator("pole_axis", map.pole_axis, PoleAxis::Z);
     checker.check_enumerator("entry_format", map.entry_format, EntryFormat::Unorm16);
     checker.check_enumerator("vertex_correction", map.correction, VertexCorrection::Signed);
 }
 
-/// The entries of a direction ascend within [0, max]. NaN fails.
+/// Checks that the entries of a direction ascend within [0, max]. NaN fails.
 template <typename T>
 void check_entries(const Checker& checker, std::string_view array, std::span<const std::uint32_t> offsets,
                    std::span<const T> entries, T max) {

@@ -28,11 +28,11 @@ namespace echinus {
 
 namespace {
 
-/// Is the centre inside, by the parity of each ray, weighted by the ray's solid angle? On a closed mesh all
-/// rays agree; on an open one the majority of the sphere decides.
+/// Is the centre inside, judged by the parity of each ray's crossings, weighted by the ray's solid angle? On
+/// a closed mesh all rays agree; on an open one the majority decides.
 struct CentreSide {
     bool inside;
-    float wrong_parity_share; ///< of the directions
+    float wrong_parity_share; ///< share of the directions
 };
 
 CentreSide side_of_centre(const Crossings& crossings, const AnyGrid& any_grid) {
@@ -53,8 +53,7 @@ CentreSide side_of_centre(const Crossings& crossings, const AnyGrid& any_grid) {
     return {inside, static_cast<float>(wrong_count) / static_cast<float>(direction_count)};
 }
 
-/// Places just beside the surface, on both sides of it, each with the share of the surface that it
-/// represents.
+/// Points close to the surface, on both sides of it, each with the area of the surface that it represents.
 class PlacesBesideSurface {
   public:
     PlacesBesideSurface(const TriangleMesh& mesh, float offset) {
@@ -69,7 +68,7 @@ class PlacesBesideSurface {
         inside_.resize(outer_.size());
     }
 
-    /// The share of the surface beside which a map is wrong. For an inside-out mesh, inside and outside are
+    /// The share of the surface near which a map is wrong. For an inside-out mesh, inside and outside are
     /// swapped.
     double wrong_share(const DistanceMapView& map) {
         double wrong = 0, all = 0;
@@ -91,7 +90,7 @@ class PlacesBesideSurface {
         Vec3d corner, u, v;
     };
 
-    /// The middles of the cuts^2 small triangles that a face is cut into.
+    /// Adds points at the centroids of the cuts^2 small triangles into which a face is cut.
     void add(const Face& face, std::uint32_t cuts, double offset) {
         const Vec3d normal = cross(face.u, face.v);
         const double area = length(normal);
@@ -115,7 +114,7 @@ class PlacesBesideSurface {
     std::vector<std::uint8_t> inside_;
 };
 
-/// The options of the wanted map with a quarter of the directions: finer maps cost more and rank centres
+/// The options of the requested map with a quarter of the directions: finer maps cost more and rank centres
 /// alike.
 DistanceMapOptions coarse(DistanceMapOptions options) {
     const auto halved = [](std::uint32_t count) { return std::max(count / 2, 4U); };
@@ -126,14 +125,14 @@ DistanceMapOptions coarse(DistanceMapOptions options) {
     return options;
 }
 
-/// Snaps the mesh to the lattice of a centre around which coarse maps of the wanted kind are wrong at few
-/// places beside the surface. Builds 19 of them.
+/// Snaps the mesh to the lattice of a centre around which coarse maps of the requested kind are wrong at few
+/// points near the surface. Builds 19 such maps.
 /// @throws Error as LatticeSnapper::snap()
 LatticeMesh snap_around_best_centre(const TriangleMesh& mesh, const DistanceMapOptions& options) {
     LatticeSnapper snapper(mesh.faces);
     LatticeMesh best;
     snapper.snap(mesh.vertices, best);
-    constexpr float kOffset = 0.005F; // of the radius
+    constexpr float kOffset = 0.005F; // in radii
     PlacesBesideSurface places(mesh, kOffset * best.radius);
     const auto cost_of = [&](const LatticeMesh& lattice) {
         DistanceMapView map = view_of(coarse(options), lattice);
@@ -169,8 +168,8 @@ std::uint64_t hash_of(const TriangleMesh& mesh, const DistanceMapOptions& option
     std::array<std::uint32_t, 5> fields{
         options.longitude_count, options.colatitude_count, static_cast<std::uint32_t>(options.correction),
         static_cast<std::uint32_t>(options.entry_format), static_cast<std::uint32_t>(options.pole_axis)};
-    constexpr std::uint32_t kOctahedral = ~0U, kCube = ~1U; // no counts of longitudes
-    constexpr std::uint32_t kEllipsoidal = 3;               // above every pole axis
+    constexpr std::uint32_t kOctahedral = ~0U, kCube = ~1U; // values that no count of longitudes has
+    constexpr std::uint32_t kEllipsoidal = 3;               // greater than every pole axis
     if (options.grid == DirectionGrid::Ellipsoidal) {
         fields[4] += kEllipsoidal;
     } else if (options.grid != DirectionGrid::Spherical) {

@@ -14,7 +14,7 @@ namespace echinus {
 
 namespace {
 
-/// The vertices of a mesh by the sample of the grid that is nearest to them.
+/// The vertices of a mesh, sorted by the sample of the grid that is nearest to them.
 class VertexBins {
   public:
     VertexBins(const LatticeMesh& lattice, const SphericalGrid& grid)
@@ -65,7 +65,7 @@ std::vector<VertexLayer> layers_of_vertices(const LatticeMesh& lattice, const Sp
             const bool is_corner = std::find(face.begin(), face.end(), i) != face.end();
             if (!is_corner && cone.nearer_than(vertex)) ++layers[i].crossings_before;
         };
-        constexpr double kHalfACell = 0.5; // from a vertex to the sample it is binned at
+        constexpr double kHalfACell = 0.5; // distance of a vertex from the sample to whose bin it belongs
         for_each_sample_near(grid, {a, b, c}, kHalfACell, [&](std::uint32_t sample) {
             for (std::uint32_t i : bins.at(sample)) cast_at_vertex(i);
         });
@@ -79,18 +79,19 @@ std::vector<VertexLayer> layers_of_vertices(const LatticeMesh& lattice, const Sp
 // distance of the vertex."
 //
 // The paper leaves the following open; this is our interpretation:
-// - Which layer is the vertex's? It has as many crossings before it as the vertex has on its own ray. The
-// layer nearest to the vertex may be another one: that of the other side of a thin part.
+// - Which layer does the vertex belong to? To the one with as many crossings before it as the vertex has on
+//   its own ray. The layer nearest to it may be a different one: that of the other side of a thin part.
 // - A vertex on a silhouette has faces through which rays leave and faces through which they enter, hence no
 //   layer of its own.
-// - Vertices whose ray is crossed more or less often than one of the samples around it are left alone: that
-// is the paper's second error situation, which the query treats.
-// - Several vertices in one cell: each sample moves by the largest amount that any of them requires.
-// - Increasing errs on the side of the solid only where the ray leaves it. Where it enters, Signed decreases.
+// - Vertices whose ray has more or fewer crossings than one of the samples around it are left unchanged: that
+//   is the paper's second error situation, which the query handles.
+// - If several vertices are in one cell, each sample moves by the largest amount that any of them requires.
+// - Increasing a distance errs on the side of the solid only where the ray leaves it. Where the ray enters,
+//   Signed decreases the distance.
 
 namespace {
 
-/// The uncorrected entries, as queries interpolate them.
+/// A view of the uncorrected entries, for interpolation as in queries.
 DistanceMapView as_map(const LatticeMesh& lattice, bool centre_inside, const Crossings& crossings) {
     DistanceMapView map;
     map.radius = lattice.radius;
@@ -100,7 +101,7 @@ DistanceMapView as_map(const LatticeMesh& lattice, bool centre_inside, const Cro
     return map;
 }
 
-/// Computes in the grid's interpolant, which is linear between samples.
+/// Computes with the grid's interpolant, which is linear between samples.
 template <typename Grid>
 class Corrector {
   public:
@@ -128,7 +129,7 @@ class Corrector {
         }
     }
 
-    /// [entry_count] by how much each entry moves; its layer determines the direction.
+    /// [entry_count] By how much each entry moves; its layer determines the direction.
     const std::vector<float>& shifts() const { return shifts_; }
 
     bool moves_outward(std::uint32_t k) const {
@@ -153,8 +154,8 @@ class Corrector {
     std::vector<float> shifts_;
 };
 
-/// Finds the faces around the rays of vertices. Any resolution gives the same layers; about as many
-/// directions as the map has suit its mesh.
+/// A grid for finding the faces around the rays of vertices. Any resolution gives the same layers; about as
+/// many directions as the map has are suitable.
 SphericalGrid finder_like(std::size_t direction_count) {
     const auto side = truncated_to<std::uint32_t>(std::sqrt(static_cast<double>(direction_count)));
     return {side, side, PoleAxis::Z};
@@ -176,7 +177,8 @@ CorrectionCounts correct(VertexCorrection correction, const LatticeMesh& lattice
         for (std::uint32_t i = first; i < last; ++i) {
             const float shift = corrector.shifts()[i];
             if (shift == 0) continue;
-            // The entry below has its final value, the one above its old one: between them order is kept.
+            // The entry below already has its final value, the one above still its old one; clamping between
+            // them preserves the order.
             const float lowest = i == first ? 0 : entries[i - 1];
             const float highest = i + 1 == last ? grid.largest_entry(lattice.radius) : entries[i + 1];
             const float wanted = Grid::moved(entries[i], shift, corrector.moves_outward(i - first));

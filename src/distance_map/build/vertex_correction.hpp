@@ -21,19 +21,18 @@ struct CorrectionCounts {
 CorrectionCounts correct_at_vertices(VertexCorrection correction, const LatticeMesh& lattice,
                                      const AnyGrid& grid, bool centre_inside, Crossings& crossings);
 
-/// How the rays cross the faces around a vertex. A vertex that no face uses has none; one with faces of both
-/// kinds lies on a silhouette.
+/// How rays cross the faces around a vertex: None if no face uses it, Both if it lies on a silhouette.
 enum class Facing : std::uint8_t { None, Outward, Inward, Both };
 
-/// Where a vertex lies among the crossings of its own ray, the one from the centre through it.
+/// The position of a vertex among the crossings of its own ray, the one from the centre through it.
 struct VertexLayer {
     Facing facing = Facing::None;
-    std::uint32_t crossings_before = 0; ///< nearer than the vertex, the faces around it not counted
-    std::uint32_t crossing_count = 0;   ///< of the whole ray, the faces around the vertex included
+    std::uint32_t crossings_before = 0; ///< crossings nearer than the vertex, without the faces around it
+    std::uint32_t crossing_count = 0;   ///< crossings of the whole ray, including the faces around the vertex
 };
 
-/// [vertex_count] Exact, like the crossings of the grid's own rays.
-/// @param grid  finds the faces that a vertex's ray may meet; any resolution gives the same answer
+/// [vertex_count] The layer of each vertex; exact, like the crossings of the grid's own rays.
+/// @param grid  used to find the faces that a vertex's ray may meet; any resolution gives the same result
 std::vector<VertexLayer> layers_of_vertices(const LatticeMesh& lattice, const SphericalGrid& grid);
 
 } // namespace echinus

@@ -1,5 +1,5 @@
-// Batches of particles through the queries of query_lanes-inl.hpp. Particles for which rows do not suffice go
-// to a list, which is then processed with all lanes full.
+// Answers batches of particles by the queries of query_lanes-inl.hpp. Particles for which rows do not suffice
+// are put on a list, which is then processed with all lanes full.
 
 #include "distance_map/query/grid_kernels.hpp"
 
@@ -39,9 +39,9 @@ GridKernels kernels_of() {
 
 #else
 
-namespace { // its names are this folder's
+namespace { // private to this folder
 
-/// The two kinds of answers: the kernel's function for them, and their destination.
+/// The two kinds of answers: for each, the kernel's function and the destination.
 struct InsideAnswers {
     using Answer = std::uint8_t;
     std::uint8_t* answers;
@@ -71,7 +71,7 @@ struct ContactAnswers {
     }
 };
 
-/// Particles of a piece of a batch that are deferred, by their number in the batch.
+/// The particles of a piece of a batch that are deferred, by their index in the piece.
 class Leftovers {
   public:
     static constexpr std::size_t kCapacity = 256;
@@ -105,7 +105,7 @@ class Leftovers {
     std::size_t count_ = 0;
 };
 
-/// @param points  [count] one after the other
+/// @param points  [count] contiguous
 template <typename Kernel, typename Answers>
 void answer_piece(const Kernel& kernel, const Vec3f* points, std::size_t count, const Answers& answers) {
     Leftovers leftovers;
@@ -146,7 +146,7 @@ void contacts_lanes(const DistanceMapView& map, const StridedSpan<const Vec3f>& 
 
 } // namespace
 
-/// @tparam Grid  the lanes of a grid
+/// @tparam Grid  the lanes class of a grid
 template <typename Grid>
 GridKernels kernels_of() {
     return {contains_lanes<Grid>, contacts_lanes<Grid>};

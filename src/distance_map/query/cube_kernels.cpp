@@ -4,7 +4,7 @@
 #define HWY_TARGET_INCLUDE "distance_map/query/cube_kernels.cpp"
 #include <hwy/foreach_target.h>
 
-// After foreach_target.h, which includes this file once for each instruction set.
+// Must follow foreach_target.h, which includes this file once per instruction set.
 #include "distance_map/query/batch_lanes-inl.hpp"
 #include "distance_map/query/lanes-inl.hpp"
 #include "simd/dispatch.hpp"
@@ -26,7 +26,7 @@ class CubeLanes : public BilinearLanes {
     HWY_INLINE PointLanes from_grid(const PointLanes& v) const { return v; }
 
     struct Side {
-        FloatMask is_x, is_y; ///< else z
+        FloatMask is_x, is_y; ///< z if neither
         FloatMask negative;
     };
     struct Coordinates {
@@ -42,11 +42,11 @@ class CubeLanes : public BilinearLanes {
     }
 
     struct Cell : Place {
-        IntLanes first; ///< the direction (0, 0)
+        IntLanes first; ///< index of the direction (0, 0)
         Side side;
     };
 
-    /// @param wanted  other lanes get some cell
+    /// @param wanted  other lanes get an arbitrary valid cell
     HWY_INLINE Cell cell_at(const Coordinates& at, FloatMask wanted) const {
         const FloatLanes along_u = hn::IfThenElseZero(wanted, at.along_u);
         const FloatLanes along_v = hn::IfThenElseZero(wanted, at.along_v);

@@ -1,4 +1,4 @@
-// The entries of a map, in either format, and its offsets, for vectors of particles: loaded as rows of four
+// The entries of a map in either format, and its offsets, for vectors of particles: loaded as rows of four
 // neighbours, or gathered.
 
 #include <echinus/distance_map.hpp>
@@ -16,12 +16,12 @@
 HWY_BEFORE_NAMESPACE();
 namespace echinus {
 namespace HWY_NAMESPACE {
-namespace { // its names are this folder's
+namespace { // private to this folder
 
 using FourFloats = hn::FixedTag<float, 4>;
 
-/// Entries of a map in its format. Which one is asked at run time: a branch that is always predicted, where a
-/// kernel for each format would double the code.
+/// The entries of a map in its format, which is tested at run time: that branch is always predicted, whereas
+/// separate kernels for the two formats would double the code.
 class EntryLanes {
   public:
     explicit EntryLanes(const DistanceMapView& map)
@@ -29,12 +29,12 @@ class EntryLanes {
           is_wide_(map.entry_format == EntryFormat::Float32),
           step_(is_wide_ ? 1 : map.largest_entry() / kUnormSteps) {}
 
-    /// For entry_of(): the entries at each lane's position and the three after it.
+    /// The entries at each lane's position and the three after it, for entry_of().
     HWY_INLINE Rows load_rows(IntLanes positions) const {
         return is_wide_ ? load_rows_at(WideRows{wide_}, positions)
                         : load_rows_at(NarrowRows{narrow_}, positions);
     }
-    /// The distances that a row holds, in the mesh's unit.
+    /// The distances that a loaded column holds, in the mesh's unit.
     HWY_INLINE FloatLanes entry_of(FloatLanes loaded) const {
         return is_wide_ ? loaded : hn::Mul(hn::ConvertTo(kFloat, hn::BitCast(kInt, loaded)), splat(step_));
     }
@@ -60,7 +60,7 @@ class EntryLanes {
         }
     };
 
-    /// Gathers pairs, each with the entry before, so that nothing beyond the last is read.
+    /// Gathers each entry together with the one before it, so that nothing beyond the last entry is read.
     HWY_INLINE FloatLanes gather_narrow(IntLanes positions) const {
         const IntLanes before = hn::Max(hn::Sub(positions, splat_int(1)), hn::Zero(kInt));
         const auto* pairs = reinterpret_cast<const std::int32_t*>(narrow_);

@@ -2,11 +2,11 @@
 
 #include <echinus/distance_map.hpp>
 
-/// The kernels of the grids, in several files so that they compile side by side: every grid is compiled for
-/// every instruction set, format of entries and kind of answer.
+/// The kernels of the grids, in separate files so that they are compiled in parallel: every grid is compiled
+/// for every instruction set and kind of answer.
 namespace echinus {
 
-/// The batches of query.cpp on one kind of grid.
+/// The batch queries of query.cpp for one kind of grid.
 struct GridKernels {
     void (*contains)(const DistanceMapView& map, const StridedSpan<const Vec3f>& points_local,
                      std::uint8_t* inside);
@@ -14,7 +14,7 @@ struct GridKernels {
                      Contact* contacts);
 };
 
-/// For the instruction set in use.
+/// The kernels of each grid for the instruction set in use.
 GridKernels spherical_kernels() noexcept;
 GridKernels ellipsoidal_kernels() noexcept;
 GridKernels octahedral_kernels() noexcept;

@@ -1,6 +1,6 @@
-// The steps that the kernels of this folder apply to a vector of particles. They are compiled once for each
-// instruction set. Each step gives the same bits as its scalar counterpart: it makes the same operations in
-// the same order, without fused multiply-add.
+// The steps that the kernels of this folder apply to a vector of particles. They are compiled once per
+// instruction set. Each step gives the same bits as its scalar counterpart: it performs the same operations
+// in the same order, without fused multiply-add.
 
 #include "directions/bilinear_grid.hpp"
 #include "geometry/elementary.hpp"
@@ -60,19 +60,19 @@ HWY_INLINE PointLanes turned_back(PoleAxis axis, const PointLanes& v) {
 HWY_INLINE IntLanes floor_to_int(FloatLanes value) {
     const IntLanes truncated = hn::ConvertTo(kInt, value);
     const FloatMask above = hn::Gt(hn::ConvertTo(kFloat, truncated), value);
-    return hn::Add(truncated, hn::VecFromMask(kInt, as_int_mask(above))); // a mask is -1
+    return hn::Add(truncated, hn::VecFromMask(kInt, as_int_mask(above))); // as a number, a mask is -1
 }
 
 using Rows = Columns<Floats>;
 
-/// The same for each corner of a cell.
+/// The same value for each corner of a cell.
 template <typename OfCorner>
 HWY_INLINE auto at_corners(const OfCorner& of_corner) {
     return std::array<decltype(of_corner(0)), 4>{of_corner(0), of_corner(1), of_corner(2), of_corner(3)};
 }
 
 /// Four neighbouring numbers of an array for each lane.
-/// @param load_row  gives the four numbers from a position on as hn::Vec<hn::FixedTag<float, 4>>
+/// @param load_row  returns the four numbers starting at a position as hn::Vec<hn::FixedTag<float, 4>>
 template <typename LoadRow>
 HWY_INLINE Rows load_rows_at(const LoadRow& load_row, IntLanes positions) {
     HWY_ALIGN std::int32_t position[kLanes];
@@ -87,12 +87,12 @@ class BilinearLanes {
         FloatLanes u, v;
     };
 
-    /// Where both corners of each row are neighbours in the arrays.
+    /// The cells whose two corners in each row are neighbours in the arrays.
     struct CornerRows {
-        IntLanes lower, upper; ///< the directions (0, 0) and (0, 1)
+        IntLanes lower, upper; ///< indices of the directions (0, 0) and (0, 1)
         FloatMask exist;
     };
-    /// Values of the corners of the rows as corners(cell) of a grid orders them.
+    /// The values of the corners in the order of the rows, rearranged to that of a grid's corners(cell).
     static HWY_INLINE std::array<IntLanes, 4> corners_of_cell(const Place&,
                                                               const std::array<IntLanes, 4>& values) {
         return values;

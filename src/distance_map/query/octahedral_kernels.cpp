@@ -4,7 +4,7 @@
 #define HWY_TARGET_INCLUDE "distance_map/query/octahedral_kernels.cpp"
 #include <hwy/foreach_target.h>
 
-// After foreach_target.h, which includes this file once for each instruction set.
+// Must follow foreach_target.h, which includes this file once per instruction set.
 #include "distance_map/query/batch_lanes-inl.hpp"
 #include "distance_map/query/lanes-inl.hpp"
 #include "simd/dispatch.hpp"
@@ -52,7 +52,7 @@ class OctahedralLanes {
         FloatMask mirrored, beyond;
     };
 
-    /// @param wanted  other lanes get some cell
+    /// @param wanted  other lanes get an arbitrary valid cell
     HWY_INLINE Cell cell_at(const Coordinates& at, FloatMask wanted) const {
         const FloatLanes along_u = hn::IfThenElseZero(wanted, at.along_u);
         const FloatLanes along_v = hn::IfThenElseZero(wanted, at.along_v);
@@ -80,7 +80,7 @@ class OctahedralLanes {
         return corners_of_cell(cell, {first, second, third, fourth});
     }
 
-    /// Replaces that of the corner which is none of the triangle's: see OctahedralGrid::Cell::doubled().
+    /// Replaces the value of the corner outside the triangle: see OctahedralGrid::Cell::doubled().
     static HWY_INLINE std::array<IntLanes, 4> corners_of_cell(const Cell& cell,
                                                               const std::array<IntLanes, 4>& values) {
         const IntLanes other = choose(cell.mirrored, values[0], values[1]);

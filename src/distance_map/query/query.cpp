@@ -1,8 +1,8 @@
 // Collision detection with a distance map: paper section 2.2, clause by clause. This scalar code is the
 // specification.
 //
-// The paper's symbols: p the particle, C and R centre and radius of the bounding sphere, d = p - C, (phi_d,
-// theta_d) its angles, S an interpolated distance.
+// The paper's symbols: p is the particle, C and R are the centre and radius of the bounding sphere, d = p -
+// C, (phi_d, theta_d) are its angles, and S is an interpolated distance.
 
 #include "distance_map/interpolation.hpp"
 #include "distance_map/query/grid_kernels.hpp"
@@ -33,8 +33,8 @@ GridKernels kernels_of(DirectionGrid grid) noexcept {
     }
 }
 
-/// Can the kernels read this map? Not when it is too small to be worth it, or its arrays are too large for
-/// 32-bit positions.
+/// Can the kernels read this map? Not if it is too small to be worthwhile or its arrays are too large for
+/// 32-bit indices.
 bool kernels_read(const DistanceMapView& map) noexcept {
     constexpr std::size_t kMinEntries = 4; // a row
     constexpr std::size_t kMaxEntries = std::size_t{1}
@@ -57,7 +57,7 @@ void contacts_by_kernel(const DistanceMapView& map, const StridedSpan<const Vec3
 /// The ray from the centre to a particle.
 template <typename Grid>
 struct Ray {
-    Vec3f along;  ///< d in the grid's frame, lengthened where it is very short: only its direction counts
+    Vec3f along;  ///< d in the grid's frame, lengthened if it is very short: only its direction matters
     float length; ///< |d|
     typename Grid::Coordinates at; ///< (phi_d, theta_d)
 };
@@ -71,20 +71,20 @@ Ray<Grid> ray_to(const DistanceMapView& map, const Grid& grid, const Vec3f& poin
 }
 
 /// "Particle p is initially tested against the bounding sphere. If the particle does not penetrate the sphere
-/// then no collision is reported." False for NaN and infinity too, since neither compares below R.
+/// then no collision is reported." Also false for NaN and infinity, since neither compares below R.
 bool reaches_sphere(const DistanceMapView& map, float d_length, float margin) {
     return d_length <= map.radius + margin;
 }
 
-/// Where a particle lies along its ray.
+/// The interval of a particle along its ray.
 struct Interval {
     std::uint32_t number;
-    float below, above; ///< its ends; where no entry is, the centre and the bounding sphere
+    float below, above; ///< its limits; the centre or the bounding sphere if there is no entry
 };
 
 /// "It is then enough to enumerate the intervals (starting from 0), find the interval where |d| lies": the
-/// interval's number is the number of distances that |d| has reached. A particle on the map's surface lies in
-/// the outer interval.
+/// interval's number is the number of distances that |d| has reached. A particle on the map's surface belongs
+/// to the outer interval.
 template <typename Grid>
 Interval interval_of(const DistanceMapView& map, const Interpolation<Grid>& at, const Ray<Grid>& ray) {
     Interval interval{0, 0, map.radius};
@@ -99,20 +99,20 @@ Interval interval_of(const DistanceMapView& map, const Interpolation<Grid>& at, 
     return interval;
 }
 
-/// "If |d| is on an even interval then p penetrates A" when the centre lies inside; "in the other case, |d|
+/// "If |d| is on an even interval then p penetrates A" if the centre is inside; "in the other case, |d|
 /// should be on an odd interval".
 bool is_inside(const DistanceMapView& map, std::uint32_t interval) {
     return (interval % 2 == 0) == map.centre_inside;
 }
 
-/// An end of the particle's interval: the k-th entry, or the bounding sphere where k is their number.
+/// A limit of the particle's interval: the k-th entry, or the bounding sphere if k is the number of entries.
 struct IntervalEnd {
     std::uint32_t k;
     float distance;
 };
 
-/// "the interpolated distance value closer to |d|": one of the two ends of the interval. The centre is no
-/// end, and the bounding sphere only where the solid reaches it, through a hole of an open mesh.
+/// "the interpolated distance value closer to |d|": one of the two limits of the interval. The centre is not
+/// a limit, and the bounding sphere is one only if the solid reaches it, through a hole of an open mesh.
 std::optional<IntervalEnd> nearest_end(const DistanceMapView& map, std::uint32_t entry_count,
                                        const Interval& interval, float d_length) {
     const IntervalEnd below{interval.number - 1, interval.below};
@@ -125,15 +125,15 @@ std::optional<IntervalEnd> nearest_end(const DistanceMapView& map, std::uint32_t
     return std::nullopt;
 }
 
-/// The unit vector along d; for the centre itself that of longitude 0, colatitude 0.
+/// The unit vector along d; for the centre itself the direction of longitude 0, colatitude 0.
 Vec3f direction_of(const Vec3f& along) {
     const float l = length(along);
     return l > 0 ? along * (1 / l) : Vec3f{0, 0, 1};
 }
 
-/// The unit normal of the map's surface, out of the solid: along the gradient where the ray leaves it,
-/// against the gradient where the ray enters. The paper has no normals; without one a solver has no contact
-/// plane and friction no direction.
+/// The unit normal of the map's surface, pointing out of the solid: along the gradient where the ray leaves
+/// the solid, against it where the ray enters. The paper has no normals, but without one a solver has neither
+/// a contact plane nor a direction of friction.
 template <typename Grid>
 Vec3f surface_normal(const DistanceMapView& map, const Grid& grid, const Interpolation<Grid>& at,
                      const Vec3f& e_r, const IntervalEnd& end) {
@@ -142,7 +142,7 @@ Vec3f surface_normal(const DistanceMapView& map, const Grid& grid, const Interpo
     const Slope slope = slope_of_entry(map, at, end.k, value);
     const Vec3f gradient =
         grid.surface_gradient(e_r, at.cell, end.distance, value, slope.along_u, slope.along_v);
-    const float steepness = length(gradient); // infinite where its square leaves the range of float
+    const float steepness = length(gradient); // infinite if its square leaves the range of float
     const Vec3f unit = std::isfinite(steepness) ? gradient * (1 / steepness) : e_r;
     return grid.from_grid(is_outward(map.centre_inside, end.k) ? unit : -unit);
 }
@@ -185,7 +185,7 @@ Contact contact(const DistanceMapView& map, const Grid& grid, const Vec3f& point
     return result;
 }
 
-/// NaN and negative margins ask for particles inside only.
+/// With NaN or a negative margin, only particles inside have contacts.
 float usable_margin(float margin) {
     return margin > 0 ? margin : 0;
 }

@@ -1,10 +1,10 @@
 // The queries of query.cpp on vectors of particles: the same operations in the same order, hence the same
 // bits.
 //
-// The corners of a cell lie in two rows of two neighbours, so that two loads of four numbers give the offsets
-// of all four samples, and one load for each sample gives its first four entries. Where that does not suffice
-// (at the seam and the poles, at the ends of the arrays, under more than four layers) the particle is one of
-// the "others", which use gathers.
+// The corners of a cell are in two rows, as two neighbours each, so that two loads of four numbers give the
+// offsets of all four samples, and one load for each sample gives its first four entries. If that does not
+// suffice (at the seam and the poles, at the ends of the arrays, with more than four layers), the particle is
+// one of the "others", for which gathers are used.
 
 #include "distance_map/layout.hpp"
 
@@ -24,7 +24,7 @@
 HWY_BEFORE_NAMESPACE();
 namespace echinus {
 namespace HWY_NAMESPACE {
-namespace { // its names are this folder's
+namespace { // private to this folder
 
 // ---- The intermediate results for a vector of particles, step by step
 
@@ -35,7 +35,7 @@ struct Rays {
     typename Grid::Coordinates at;
 };
 
-/// Interpolation of interpolation.hpp.
+/// The lanes of Interpolation of interpolation.hpp.
 template <typename Grid>
 struct Samples {
     typename Grid::Cell cell;
@@ -97,7 +97,7 @@ struct LoadedEntries {
     }
 };
 
-/// Any entries.
+/// Entries at any position.
 template <typename Grid>
 struct GatheredEntries {
     static constexpr std::int32_t kMaxEntries = std::numeric_limits<std::int32_t>::max();
@@ -126,8 +126,8 @@ class Kernel {
           entry_count_(static_cast<std::int32_t>(map.entry_count())),
           centre_inside_(splat_mask(map.centre_inside)) {}
 
-    /// Answers those of a vector of neighbouring particles for which rows of entries suffice.
-    /// @return the others
+    /// Answers a vector of consecutive particles, except those for which rows of entries do not suffice.
+    /// @return the particles without an answer
     HWY_INLINE FloatMask contains_most(const Vec3f* points, std::uint8_t* inside) const {
         const Rays<Grid> rays = aim(load(points));
         const FloatMask reaches = hn::Le(rays.length, splat(map_.radius));
@@ -165,8 +165,8 @@ class Kernel {
     /// The samples around the rays.
     struct Neighbours {
         Samples<Grid> samples;
-        std::array<IntLanes, 4> first; ///< where the entries of each begin
-        FloatMask known;               ///< for these lanes
+        std::array<IntLanes, 4> first; ///< where the entries of each sample begin
+        FloatMask known;               ///< the lanes for which all of this is known
     };
 
     static HWY_INLINE PointLanes load(const Vec3f* points) {
@@ -202,11 +202,13 @@ class Kernel {
         return {grid_, entries_, found.first, found.samples.entry_count};
     }
 
-    /// The samples around the rays where rows of offsets and of entries hold all that is needed.
+    /// Loads the samples around the rays, if rows of offsets and of entries contain everything that is
+    /// needed.
     HWY_INLINE Neighbours look_at_rows(const Rays<Grid>& rays, FloatMask reaches) const {
         const typename Grid::Cell cell = grid_.cell_at(rays.at, reaches);
         const typename Grid::CornerRows rows = grid_.corner_rows(cell);
-        // A row of offsets: where two directions begin and the second ends, and one number more.
+        // A row of offsets contains the beginnings of two directions, the end of the second, and one more
+        // number.
         const IntMask offsets_end = hn::Gt(rows.upper, splat_int(direction_count_ - 3));
         const FloatMask has_rows = hn::And(reaches, hn::AndNot(as_mask(offsets_end), rows.exist));
         const OffsetRows offsets{map_.entry_offsets.data()};
@@ -227,7 +229,7 @@ class Kernel {
         return found;
     }
 
-    /// The samples around any rays.
+    /// Loads the samples around any rays.
     HWY_INLINE Neighbours look_at(const Rays<Grid>& rays, FloatMask reaches) const {
         const typename Grid::Cell cell = grid_.cell_at(rays.at, reaches);
         const std::array<IntLanes, 4> corners = grid_.corners(cell);
@@ -343,7 +345,7 @@ class Kernel {
         return grid_.from_grid(choose(inward, -unit, choose(on_sphere, e_r, unit)));
     }
 
-    /// contact() of query.cpp, where the samples are known; elsewhere none.
+    /// contact() of query.cpp for lanes whose samples are known; no contact for the others.
     template <typename EntriesAt>
     HWY_INLINE Contacts contacts_of(const PointLanes& point, const Rays<Grid>& rays,
                                     const Neighbours& neighbours, const EntriesAt& entries_at,
@@ -378,7 +380,8 @@ class Kernel {
         HWY_ALIGN float body[4 * kLanes];
         hn::StoreInterleaved4(from.point.x, from.point.y, from.point.z, from.normal.x, kFloat, head);
         hn::StoreInterleaved4(from.normal.y, from.normal.z, from.depth, no_face, kFloat, body);
-        // The three flags are bytes, the first in the lowest of a word; what follows them is padding.
+        // The three flags are bytes, the first in the lowest byte of a word; the bytes after them are
+        // padding.
         HWY_ALIGN std::int32_t flags[kLanes];
         constexpr std::int32_t kCertain = 0x100;
         hn::Store(hn::Add(splat_int(kCertain), hn::IfThenElseZero(as_int_mask(from.inside), splat_int(1))),

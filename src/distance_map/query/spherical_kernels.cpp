@@ -6,7 +6,7 @@
 #define HWY_TARGET_INCLUDE "distance_map/query/spherical_kernels.cpp"
 #include <hwy/foreach_target.h>
 
-// After foreach_target.h, which includes this file once for each instruction set.
+// Must follow foreach_target.h, which includes this file once per instruction set.
 #include "distance_map/query/batch_lanes-inl.hpp"
 #include "simd/dispatch.hpp"
 
@@ -41,10 +41,10 @@ class SphericalLanes : public BilinearLanes {
     }
 
     struct Cell : Place {
-        IntLanes i, j; ///< its corner (0, 0); j is -1 or the last row beyond a pole
+        IntLanes i, j; ///< its corner (0, 0); beyond a pole, j is -1 or the last row
     };
 
-    /// @param wanted  other lanes get some cell
+    /// @param wanted  other lanes get an arbitrary valid cell
     HWY_INLINE Cell cell_at(const Coordinates& at, FloatMask wanted) const {
         const FloatLanes along_phi = hn::IfThenElseZero(wanted, at.along_phi);
         const FloatLanes along_theta = hn::IfThenElseZero(wanted, at.along_theta);
@@ -65,7 +65,7 @@ class SphericalLanes : public BilinearLanes {
                 corner(next_i, next_j)};
     }
 
-    /// Everywhere but at the seam and the poles.
+    /// The rows of corners; they exist except at the seam and the poles.
     HWY_INLINE CornerRows corner_rows(const Cell& cell) const {
         const IntLanes lower = hn::Add(hn::Mul(cell.j, splat_int(columns_)), cell.i);
         const IntMask beyond_pole =
@@ -135,7 +135,7 @@ class EllipsoidalLanes : public SphericalLanes {
   private:
     HWY_INLINE PointLanes in_scaled_frame(const PointLanes& v) const { return times(v, splat(scale_)); }
 
-    Vec3f scale_; ///< in the grid's frame
+    Vec3f scale_; ///< the scale in the grid's frame
 };
 
 #endif

@@ -1,4 +1,4 @@
-// The surface that a map describes, for pictures: the paper's figures 2 and 3.
+// The surface that a map describes, for figures: the paper's figures 2 and 3.
 
 #include "distance_map/layout.hpp"
 
@@ -10,7 +10,7 @@ namespace echinus {
 
 namespace {
 
-/// One vertex per entry, at the entry's position in the entry arrays.
+/// One vertex per entry, at the entry's index in the entry arrays.
 template <typename Grid>
 std::vector<Vec3f> entry_points(const DistanceMapView& map, const Grid& grid) {
     std::vector<Vec3f> points;
@@ -24,7 +24,7 @@ std::vector<Vec3f> entry_points(const DistanceMapView& map, const Grid& grid) {
     return points;
 }
 
-/// One face of layer k between three directions that are counter-clockwise seen from outside the sphere.
+/// Adds a face of layer k between three directions that are counter-clockwise seen from outside the sphere.
 void add_face(const DistanceMapView& map, const Triangle& directions, std::uint32_t k, MapSurface& surface) {
     Triangle face;
     for (std::size_t c = 0; c < 3; ++c) face[c] = map.entry_offsets[directions[c]] + k;
@@ -33,7 +33,7 @@ void add_face(const DistanceMapView& map, const Triangle& directions, std::uint3
     surface.layer.push_back(k);
 }
 
-/// The layers of a facet of the grid whose samples have equal counts, each as a fan.
+/// Adds the layers of a facet of the grid whose samples have equal entry counts, each layer as a fan.
 void add_layers(const DistanceMapView& map, std::span<const std::uint32_t> facet, MapSurface& surface) {
     const std::uint32_t count = entry_count_of(map, facet[0]);
     const auto has_other_count = [&](std::uint32_t d) { return entry_count_of(map, d) != count; };
