@@ -5,10 +5,10 @@
 #include <optional>
 #include <utility>
 
-// Active set method: a basis of at most four points determines the sphere. While some point lies outside, the
-// farthest one joins the basis, and the smallest sphere of these at most five points is found by trying every
-// subset that could determine it. Each round enlarges the sphere, so the rounds are finitely many; a mesh
-// takes ten to twenty.
+// An active-set method: a basis of at most four points determines the sphere. While some point is outside,
+// the farthest one joins the basis, and the smallest sphere around these at most five points is found by
+// trying every subset that could determine it. Each round enlarges the sphere, so the number of rounds is
+// finite; a mesh takes ten to twenty.
 
 namespace echinus {
 
@@ -54,9 +54,9 @@ void eliminate(Rows& rows, const Columns& columns, std::size_t k) {
     }
 }
 
-/// Solves three linear equations by elimination with complete pivoting: backward stable, so that the centre
-/// is equally far from all points up to rounding even where they are nearly coplanar. Returns nothing when
-/// the rows are dependent.
+/// Solves three linear equations by elimination with complete pivoting, which is backward stable: the centre
+/// is equally far from all points up to rounding, even if they are nearly coplanar. Returns nothing if the
+/// rows are dependent.
 std::optional<Vec3d> solve(Rows rows) {
     Columns columns{0, 1, 2};
     for (std::size_t k = 0; k < 3; ++k) {
@@ -73,7 +73,7 @@ std::optional<Vec3d> solve(Rows rows) {
     return Vec3d{x[0], x[1], x[2]};
 }
 
-/// The plane of all points equally far from the origin and from p.
+/// The plane of all points that are equally far from the origin and from p.
 Row bisector(const Vec3d& p) {
     return {p.x, p.y, p.z, dot(p, p) / 2};
 }
@@ -104,9 +104,9 @@ double largest_distance(const Vec3d& centre, const Basis& basis) {
     return largest;
 }
 
-/// The smallest sphere around the basis and one point outside its sphere, which therefore lies on the new
-/// one. Each subset's sphere is enlarged until it encloses all five; the smallest is the answer, without any
-/// tolerance.
+/// The smallest sphere around the basis and one point outside its sphere, which is therefore on the new
+/// sphere. The sphere of each subset is enlarged until it encloses all of these points; the smallest one is
+/// the result, without any tolerance.
 Candidate enlarge(const Basis& basis, const Vec3d& outside) {
     std::optional<Candidate> best;
     for (unsigned subset = 0; subset < 1U << basis.size; ++subset) {
@@ -122,8 +122,8 @@ Candidate enlarge(const Basis& basis, const Vec3d& outside) {
     return *best; // the empty subset always has a centre
 }
 
-/// The first of the farthest points. The largest distance of each block is found without its index, which a
-/// compiler turns into vector instructions.
+/// The first of the farthest points. The largest distance in each block is computed without its index, so
+/// that the compiler vectorises the loop.
 Vec3d farthest_from(const Vec3d& centre, std::span<const Vec3f> points) {
     constexpr std::size_t kBlock = 256;
     const auto distance_sq = [&](const Vec3f& p) {
@@ -161,7 +161,7 @@ Sphere smallest_enclosing_sphere(std::span<const Vec3f> points) {
     Vec3d farthest = farthest_from(current.sphere.centre, points);
     while (length(farthest - current.sphere.centre) > current.sphere.radius) {
         const Candidate next = enlarge(current.basis, farthest);
-        // Growth stops with a point outside only when rounding has reached the last digits.
+        // The sphere stops growing while a point is outside only if rounding has reached the last digits.
         if (!(next.sphere.radius > current.sphere.radius)) break;
         current = next;
         farthest = farthest_from(current.sphere.centre, points);

@@ -134,10 +134,10 @@ namespace {
 
 constexpr std::uint32_t kNoFace = std::numeric_limits<std::uint32_t>::max();
 
-/// The face beyond an edge, if there is just one.
+/// The face across an edge, if there is exactly one.
 struct Neighbour {
     std::uint32_t face = kNoFace;
-    bool runs_alike = false; ///< both run along the edge the same way, so that one of them is turned
+    bool runs_alike = false; ///< both run along the edge in the same direction, so one of them is turned
 };
 
 std::vector<std::array<Neighbour, 3>> find_neighbours(std::span<const EdgeUse> edge_uses,
@@ -152,7 +152,7 @@ std::vector<std::array<Neighbour, 3>> find_neighbours(std::span<const EdgeUse> e
     return neighbours;
 }
 
-/// Finds the patches, how their faces run, and which of them are orientable.
+/// Finds the patches, the orientation of their faces, and which of them are orientable.
 Orientation find_patches(std::span<const EdgeUse> edge_uses, std::size_t face_count) {
     const auto neighbours = find_neighbours(edge_uses, face_count);
     Orientation result{std::vector(face_count, kNoFace), std::vector<bool>(face_count), {}, {}};
@@ -197,7 +197,8 @@ std::vector<bool> find_closed_sets(std::span<const EdgeUse> edge_uses,
                                    std::span<const std::uint32_t> set_of_face, std::size_t set_count,
                                    const std::vector<bool>& is_turned) {
     std::vector<bool> is_closed(set_count, true);
-    std::vector<std::int64_t> balance(set_count); // of the set's faces along one edge
+    std::vector<std::int64_t> balance(
+        set_count); // of the set's faces along one edge: those in one direction minus those in the other
     for_each_edge(edge_uses, [&](std::span<const EdgeUse> uses) {
         for (const EdgeUse& use : uses) {
             const bool is_ascending = use.ascending != (!is_turned.empty() && is_turned[use.face]);

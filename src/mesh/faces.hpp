@@ -9,18 +9,18 @@
 
 namespace echinus {
 
-/// Two of the three indices are the same.
+/// Are two of the three indices equal?
 bool has_equal_corners(const Triangle& face);
 
-/// Six times the signed volume of the tetrahedron of a reference point and a face: positive where the face
-/// looks away from the point.
+/// Six times the signed volume of the tetrahedron of a reference point and a face: positive if the face
+/// points away from the point.
 /// @pre indices are in range
 double six_volumes(const TriangleMesh& mesh, const Triangle& face, const Vec3d& reference);
 
-/// The sets of two or more faces that have the same three vertices, in any order; each set ascending.
+/// The sets of two or more faces that have the same three vertices in any order; each set is ascending.
 std::vector<std::vector<std::uint32_t>> find_equal_faces(const TriangleMesh& mesh);
 
-/// The faces that have the same three vertices, in any order, as an earlier face; ascending.
+/// The faces that have the same three vertices, in any order, as a face before them; ascending.
 std::vector<std::uint32_t> find_duplicate_faces(const TriangleMesh& mesh);
 
 /// The faces with two equal corners or with area zero (as computed in double: exact unless the coordinates of
@@ -28,7 +28,7 @@ std::vector<std::uint32_t> find_duplicate_faces(const TriangleMesh& mesh);
 /// @pre indices are in range
 std::vector<std::uint32_t> find_degenerate_faces(const TriangleMesh& mesh);
 
-/// One face's use of one of its edges. Edge k of a face runs from corner k to the next.
+/// The use of an edge by one of its faces. Edge k of a face runs from corner k to the next.
 struct EdgeUse {
     std::uint32_t low; ///< the smaller of the edge's two vertices
     std::uint32_t high;
@@ -37,8 +37,8 @@ struct EdgeUse {
     bool ascending; ///< the face runs from low to high
 };
 
-/// All uses of all edges, sorted by edge and then by face, so that nothing depends on the order of a hash.
-/// Faces with two equal corners have no boundary and contribute nothing.
+/// All uses of all edges, sorted by edge and then by face. Faces with two equal corners have no boundary and
+/// contribute nothing.
 /// @pre indices are in range
 std::vector<EdgeUse> sorted_edge_uses(std::span<const Triangle> faces);
 inline std::vector<EdgeUse> sorted_edge_uses(const TriangleMesh& mesh) {
@@ -48,7 +48,7 @@ inline std::vector<EdgeUse> sorted_edge_uses(const TriangleMesh& mesh) {
 /// The uses of the edge between two vertices in the result of sorted_edge_uses().
 std::span<const EdgeUse> uses_of_edge(std::span<const EdgeUse> all, std::uint32_t a, std::uint32_t b);
 
-/// Equally many uses run along the edge in each direction: they cancel, the edge is no border.
+/// Do equally many faces run along the edge in each direction? If so, they cancel, and the edge is no border.
 bool is_balanced(std::span<const EdgeUse> uses_of_one_edge);
 
 /// Calls visit(uses of one edge) for each edge in turn.
@@ -60,7 +60,7 @@ void for_each_edge(std::span<const EdgeUse> all, Visit&& visit) {
     }
 }
 
-/// Sets of faces joined by shared vertices.
+/// Sets of faces that are connected by shared vertices.
 struct Components {
     std::size_t count = 0;
     std::vector<std::uint32_t> of_face; ///< [face_count] numbered in the order of their first faces
@@ -69,26 +69,27 @@ struct Components {
 /// @pre indices are in range
 Components find_components(const TriangleMesh& mesh);
 
-/// Which way faces run, as seen across edges with exactly two faces. Faces joined by such edges are a patch.
+/// The relative orientation of faces across edges with exactly two faces. Faces connected by such edges form
+/// a patch.
 struct Orientation {
     std::vector<std::uint32_t> patch_of_face; ///< [face_count] numbered in the order of their first faces
-    std::vector<bool> is_turned;              ///< [face_count] against the first face of the patch
-    std::vector<bool> is_orientable; ///< [patch_count] all ways from one face to another agree about that
-    std::vector<bool> is_closed;     ///< [patch_count] orientable, and a closed surface by itself
+    std::vector<bool> is_turned;              ///< [face_count] runs opposite to the first face of its patch
+    std::vector<bool> is_orientable; ///< [patch_count] all paths between two faces agree about is_turned
+    std::vector<bool> is_closed;     ///< [patch_count] orientable, and by itself a closed surface
 };
 
 /// Time O(faces).
 /// @param edge_uses  sorted_edge_uses() of the faces
 Orientation find_orientation(std::span<const EdgeUse> edge_uses, std::size_t face_count);
 
-/// Which of the sets that faces are divided into are closed surfaces by themselves: along each edge equally
-/// many faces of the set run each way. Time O(faces).
-/// @param is_turned  [face_count] faces to be taken as turned; or empty: none
+/// Which of the sets into which faces are divided are closed surfaces by themselves: along each edge equally
+/// many faces of the set run in each direction. Time O(faces).
+/// @param is_turned  [face_count] faces whose orientation counts as reversed; empty for none
 std::vector<bool> find_closed_sets(std::span<const EdgeUse> edge_uses,
                                    std::span<const std::uint32_t> set_of_face, std::size_t set_count,
                                    const std::vector<bool>& is_turned = {});
 
-/// winding_number() of some faces.
+/// winding_number() of some faces only.
 double winding_number(std::span<const Vec3f> vertices, std::span<const Triangle> faces, const Vec3d& point);
 
 } // namespace echinus

@@ -13,7 +13,7 @@ namespace echinus {
 
 namespace {
 
-/// A length that is positive both as a double and as the float that vertices use.
+/// Is a length positive and finite, both as a double and as the float that vertices use?
 bool is_usable_length(double length) {
     return length <= std::numeric_limits<float>::max() && static_cast<float>(length) > 0;
 }
@@ -33,7 +33,7 @@ void require_face_count(double face_count) {
             "these segments make more faces than a generated mesh may have (2^27)");
 }
 
-/// The two faces of the quadrilateral a b c d, given counter-clockwise.
+/// Adds the two faces of the quadrilateral a b c d, which is given counter-clockwise.
 void add_quad(TriangleMesh& mesh, std::uint32_t a, std::uint32_t b, std::uint32_t c, std::uint32_t d) {
     mesh.faces.push_back({a, b, c});
     mesh.faces.push_back({a, c, d});
@@ -51,7 +51,7 @@ Vec3f sphere_point(double radius, const CirclePoint& colatitude, const CirclePoi
                        radius * (colatitude.sine * longitude.sine), radius * colatitude.cosine});
 }
 
-/// The north pole is the first vertex, the south pole the last; between them lie the parallels in order.
+/// The first vertex is the north pole and the last the south pole; between them are the parallels in order.
 void add_sphere_faces(TriangleMesh& mesh, std::uint32_t meridian_count, std::uint32_t parallel_count) {
     const std::uint32_t north_pole = 0;
     const std::uint32_t south_pole = 1 + meridian_count * (parallel_count - 1);
@@ -67,14 +67,15 @@ void add_sphere_faces(TriangleMesh& mesh, std::uint32_t meridian_count, std::uin
         mesh.faces.push_back({south_pole, vertex(parallel_count - 1, m + 1), vertex(parallel_count - 1, m)});
 }
 
-/// One side of a box: segments x segments squares with vertices of its own, on the side where `normal_axis`
-/// is at its largest (or smallest). x, y, z follow each other cyclically, so u x v points along the normal.
+/// Adds one side of a box: segments x segments squares with vertices of their own, on the side where the
+/// coordinate along `normal_axis` is largest (or smallest). The axes follow each other cyclically, so u x v
+/// points along the normal.
 void add_box_side(TriangleMesh& mesh, const std::array<double, 3>& size, std::uint32_t segments,
                   std::size_t normal_axis, bool largest) {
     const std::size_t u_axis = (normal_axis + 1) % 3;
     const std::size_t v_axis = (normal_axis + 2) % 3;
     const auto first = kept_as<std::uint32_t>(mesh.vertices.size());
-    // From -size / 2 to size / 2; the same bits for the same place on neighbouring sides.
+    // Ranges from -size / 2 to size / 2; equal coordinates of neighbouring sides have the same bits.
     const auto coordinate = [&](std::size_t axis, std::uint32_t i) {
         return static_cast<float>(size[axis] * (2.0 * i - segments) / (2.0 * segments));
     };

@@ -33,24 +33,26 @@ int longest_component(const Vec3d& v) {
     return y > z ? 1 : 2;
 }
 
-/// Does the line through v and e, with `own` beside it, part triangle v e own from triangle v p q but for v?
+/// Does the line through v and e, with `own` on one side, separate triangle v e own from triangle v p q
+/// except at v?
 bool edge_parts(const Point2& v, const Point2& e, const Point2& own, const Point2& p, const Point2& q) {
     const int side = orientation(v, e, own);
     const auto beyond = [&](const Point2& point) {
         const int point_side = orientation(v, e, point);
         if (point_side != 0) return point_side != side;
-        // On the line: away from e?
+        // On the line: does the point lie beyond v, seen from e?
         return (e.x < v.x && v.x < point.x) || (e.x > v.x && v.x > point.x) || (e.y < v.y && v.y < point.y) ||
                (e.y > v.y && v.y > point.y);
     };
     return side != 0 && beyond(p) && beyond(q);
 }
 
-/// Two faces with common vertices, sorted: common ones first. Equal vertices of one face stay.
+/// Two faces with common vertices, whose corners are sorted with the common ones first. Equal vertices of one
+/// face are kept.
 struct Neighbours {
     const TriangleMesh& mesh;
     Triangle a, b;
-    int a_shared = 0, b_shared = 0; ///< so many of the corners are common
+    int a_shared = 0, b_shared = 0; ///< how many corners of each are common
 
     Neighbours(const TriangleMesh& of, const Triangle& first, const Triangle& second)
         : mesh(of), a(first), b(second) {
@@ -63,7 +65,7 @@ struct Neighbours {
     const Vec3f& at_a(int corner) const { return mesh.vertices[a[corner]]; }
     const Vec3f& at_b(int corner) const { return mesh.vertices[b[corner]]; }
 
-    /// Both lie off the edge's line to different sides, or in different planes.
+    /// The other two corners lie on different sides of the edge's line, or the faces are not coplanar.
     bool only_share_an_edge() const {
         const Vec3f &u = at_a(0), &v = at_a(1), &p = at_a(2), &q = at_b(2);
         if (orientation(u, v, p, q) != 0) return true;
@@ -75,7 +77,7 @@ struct Neighbours {
         return side(p) * side(q) < 0;
     }
 
-    /// Seen along an axis, a line through the common corner and along an edge parts them.
+    /// Seen along an axis, a line through the common corner and along an edge separates the faces.
     bool only_share_a_corner() const {
         const Vec3d corner(at_a(0));
         const int axis = longest_component(cross(Vec3d(at_a(1)) - corner, Vec3d(at_a(2)) - corner));
@@ -86,7 +88,8 @@ struct Neighbours {
                edge_parts(v, b_1, b_2, a_1, a_2) || edge_parts(v, b_2, b_1, a_1, a_2);
     }
 
-    /// The largest parts without a common vertex: each common one goes to one face's part or to the other's.
+    /// Tests the largest parts of both faces that have no common vertex: each common vertex is assigned to
+    /// one of the faces.
     bool parts_meet() const {
         for (unsigned choice = 0; choice < 1U << a_shared; ++choice) {
             Simplex a_part, b_part;
@@ -114,7 +117,7 @@ bool intersect_beyond_shared(const TriangleMesh& mesh, const Triangle& a, const 
     return pair.parts_meet();
 }
 
-/// Pairs in the order in which a tree finds them, and then ascending.
+/// Pairs in the order in which a tree finds them, to be sorted afterwards.
 class FoundPairs {
   public:
     explicit FoundPairs(std::size_t most) : most_(most) {}
@@ -128,7 +131,7 @@ class FoundPairs {
     }
 
     std::vector<FacePair> sorted() && {
-        // As one number each: comparing one member after the other branches.
+        // Compares single numbers: comparing one member after the other would branch.
         const auto number = [](const FacePair& pair) { return std::uint64_t{pair.a} << 32 | pair.b; };
         std::sort(pairs_.begin(), pairs_.end(),
                   [&](const FacePair& p, const FacePair& q) { return number(p) < number(q); });

@@ -10,9 +10,9 @@
 #include <optional>
 #include <utility>
 
-// The segment that two faces have in common ends where an edge or a corner of one meets the other. Such an
-// end is named by the parts of the two meshes that meet there, which exact signs decide: all faces around it
-// find the same name, and segments join where their ends have the same one.
+// The common segment of two faces has its endpoints where an edge or a corner of one meets the other. An
+// endpoint is identified by the parts of the two meshes that meet there, which exact signs determine: all
+// faces around it compute the same identity, and segments are joined at identical endpoints.
 
 namespace echinus {
 
@@ -21,7 +21,8 @@ namespace {
 /// A vertex, an edge or a face of a mesh.
 struct Part {
     std::uint8_t dimension;
-    std::uint32_t first, second; ///< vertices, ascending, or the face, twice
+    std::uint32_t first,
+        second; ///< for a vertex or an edge, the vertices, ascending; for a face, its number twice
 
     friend auto operator<=>(const Part&, const Part&) = default;
 };
@@ -31,7 +32,7 @@ Part edge_part(std::uint32_t u, std::uint32_t v) {
     return {1, std::min(u, v), std::max(u, v)};
 }
 
-/// The parts that meet in an end of a segment: of the first mesh and of the second, or of one mesh ascending.
+/// The parts that meet at an endpoint of a segment: one of each mesh, or two of the same mesh, ascending.
 using Meeting = std::array<Part, 2>;
 
 struct End {
@@ -50,7 +51,8 @@ struct Face {
           vertices(mesh.faces[face]), corners{mesh.vertices[vertices[0]], mesh.vertices[vertices[1]],
                                               mesh.vertices[vertices[2]]} {}
 
-    /// @param signs  on which side of each edge a point lies, at most two of them 0; inside all agree
+    /// @param signs  the side of each edge on which a point lies, at most two of them 0; all agree in the
+    ///               interior
     std::optional<Part> part_at(const std::array<int, 3>& signs) const {
         const auto [least, most] = std::minmax({signs[0], signs[1], signs[2]});
         if (least < 0 && most > 0) return std::nullopt;
@@ -65,7 +67,8 @@ struct Face {
         return std::nullopt;
     }
 
-    /// The part on which a point of the face's plane lies; none beside the face. @param axis  shows the face
+    /// The part on which a point of the face's plane lies; nothing if it is outside the face. @param axis  an
+    /// axis along which the face is not seen edge-on
     std::optional<Part> part_below(const Vec3f& point, int axis) const {
         std::array<int, 3> signs{};
         for (std::size_t k = 0; k < 3; ++k)
@@ -74,24 +77,26 @@ struct Face {
         return part_at(signs);
     }
 
-    /// The part through which a line passes that is not in the face's plane.
+    /// The part through which a line passes; the line is not in the face's plane.
     std::optional<Part> part_through(const Vec3f& p, const Vec3f& q) const {
         std::array<int, 3> signs{};
         for (std::size_t k = 0; k < 3; ++k) signs[k] = orientation(p, q, corners[k], corners[(k + 1) % 3]);
         return part_at(signs);
     }
 
-    /// Where the line from p to q, which lie on different sides, passes through the plane.
+    /// Where the line from p to q, which are on different sides, crosses the plane.
     Vec3f crossing(const Vec3f& p, const Vec3f& q) const {
         const Vec3d origin(corners[0]), from(p), to(q);
         const Vec3d normal = cross(Vec3d(corners[1]) - origin, Vec3d(corners[2]) - origin);
         const double start = dot(normal, from - origin), end = dot(normal, to - origin);
         const double share = start / (start - end);
-        return Vec3f(from + (to - from) * (share >= 0 && share <= 1 ? share : 0.5)); // rounding may lose it
+        return Vec3f(from +
+                     (to - from) *
+                         (share >= 0 && share <= 1 ? share : 0.5)); // rounding may move it out of the segment
     }
 };
 
-/// At most two different ends of one segment.
+/// At most two different endpoints of a segment.
 class Ends {
   public:
     void add(const Meeting& parts, const Vec3f& position) {
@@ -107,7 +112,8 @@ class Ends {
     std::size_t count_ = 0;
 };
 
-/// Adds the ends in which corners and edges of `a` meet `b`. @param name  makes a Meeting of a's part and b's
+/// Adds the endpoints at which corners and edges of `a` meet `b`. @param name  makes a Meeting of a part of a
+/// and one of b
 template <typename Name>
 void add_ends(const Face& a, const Face& b, int axis_of_b, const Name& name, Ends& ends) {
     std::array<int, 3> sides{};
@@ -142,7 +148,7 @@ Ends common_segment(const Face& a, const Face& b, bool of_one_mesh) {
     return ends;
 }
 
-/// A graph of segments, and the curves along it.
+/// A graph of segments, and the curves that consist of them.
 class Segments {
   public:
     void add(const Ends& ends) {
@@ -165,7 +171,7 @@ class Segments {
   private:
     using Segment = std::array<std::uint32_t, 2>; ///< nodes, ascending
 
-    /// Gives the ends with equal names one number.
+    /// Gives endpoints with the same parts the same number.
     void number_nodes() {
         std::vector<std::uint32_t> order(ends_.size());
         for (std::uint32_t i = 0; i < order.size(); ++i) order[i] = i;
@@ -183,7 +189,7 @@ class Segments {
         ends_ = {};
     }
 
-    /// Two faces at an edge in a third one's plane both find that edge: each segment counts once.
+    /// Two faces at an edge that lies in a third one's plane both find that edge; it counts as one segment.
     void list_segments() {
         for (Segment& segment : segments_) std::sort(segment.begin(), segment.end());
         std::sort(segments_.begin(), segments_.end());
@@ -217,11 +223,11 @@ class Segments {
         return curve;
     }
 
-    std::vector<End> ends_;        ///< two of each segment
-    std::vector<Vec3f> positions_; ///< of the nodes
+    std::vector<End> ends_;        ///< two endpoints for each segment
+    std::vector<Vec3f> positions_; ///< positions of the nodes
     std::vector<Segment> segments_;
-    std::vector<bool> is_used_;        ///< by a curve
-    std::vector<std::uint32_t> first_; ///< of each node, in at_node_
+    std::vector<bool> is_used_;        ///< whether a curve contains the segment
+    std::vector<std::uint32_t> first_; ///< index of each node's first segment in at_node_
     std::vector<std::uint32_t> at_node_;
 };
 

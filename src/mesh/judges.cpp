@@ -12,7 +12,7 @@ namespace {
 
 /// Signed solid angle of a triangle seen from the origin, after van Oosterom and Strackee, "The Solid Angle
 /// of a Plane Triangle" (1983): tan(angle / 2) = a.(b x c) / (|a||b||c| + (a.b)|c| + (b.c)|a| + (c.a)|b|).
-/// Positive when the triangle is clockwise seen from the origin, which is then behind it.
+/// Positive if the triangle is clockwise seen from the origin, which is then behind it.
 double solid_angle(const Vec3d& a, const Vec3d& b, const Vec3d& c) {
     const double la = length(a);
     const double lb = length(b);
@@ -44,8 +44,8 @@ double segment_distance(const Vec3d& a, const Vec3d& b, const Vec3d& point) {
     return length(point - (a + ab * t));
 }
 
-/// The nearest of the three edges, unless the point projects into the triangle. Triangles without area need
-/// no special case: they consist of their edges.
+/// The distance to the nearest of the three edges or, if the point projects into the triangle, to its plane.
+/// Triangles without area need no special case: they consist of their edges.
 double triangle_distance(const Vec3d& a, const Vec3d& b, const Vec3d& c, const Vec3d& point) {
     const Vec3d normal = cross(b - a, c - a);
     const double normal_sq = dot(normal, normal);

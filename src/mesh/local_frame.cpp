@@ -14,7 +14,7 @@ namespace echinus {
 
 namespace {
 
-/// Of half the longest side of the box: 3e-5.
+/// The largest rounding error, as a share of half the longest side of the box: 3e-5.
 constexpr double kMostRounding = 0x1p-15;
 
 Vec3d origin_of(const AlignedBox<double>& box) {

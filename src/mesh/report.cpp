@@ -25,7 +25,7 @@ Fault make_fault(const std::vector<std::uint32_t>& faces) {
     return make_fault(faces.size(), faces);
 }
 
-/// The edges of one kind and all faces at them.
+/// The edges with one kind of fault, and all faces at them.
 struct EdgeFault {
     std::size_t count = 0;
     std::vector<std::uint32_t> faces;
@@ -53,8 +53,8 @@ void report_edges(std::span<const EdgeUse> edge_uses, MeshReport& report) {
     report.misoriented_edges = misoriented.finish();
 }
 
-/// Do the faces at each vertex form one fan? Corners of two faces at the same vertex are joined where the
-/// faces share an edge; a fan is one set of corners, so there must be as many sets as vertices.
+/// Do the faces at each vertex form one fan? Corners of two faces at the same vertex are joined if the faces
+/// share an edge. A fan is then one set of corners, so there must be as many sets as vertices.
 bool every_vertex_has_one_fan(const TriangleMesh& mesh, std::span<const EdgeUse> edge_uses) {
     UnionFind corners(3 * mesh.faces.size());
     const auto corner_at = [&](const EdgeUse& use, bool low) {
@@ -75,16 +75,16 @@ bool every_vertex_has_one_fan(const TriangleMesh& mesh, std::span<const EdgeUse>
     return true;
 }
 
-/// Measured from a nearby point, so that a mesh far from the origin loses no digits.
+/// Measured from a nearby point, so that no digits are lost if a mesh is far from the origin.
 double signed_volume(const TriangleMesh& mesh, const Vec3d& reference) {
     double sum = 0;
     for (const Triangle& face : mesh.faces) sum += six_volumes(mesh, face, reference);
     return sum / 6;
 }
 
-/// MeshReport::rounding_step
+/// Computes MeshReport::rounding_step.
 double rounding_step(const TriangleMesh& mesh, double radius) {
-    constexpr double kLatticeStep = 0x1p-19; // of the radius: directions/lattice.hpp
+    constexpr double kLatticeStep = 0x1p-19; // as a share of the radius: directions/lattice.hpp
     double largest = 0;
     for (const Triangle& face : mesh.faces)
         for (const std::uint32_t vertex : face) {

@@ -59,7 +59,8 @@ void UsedVertices::require_valid(std::span<const Vec3f> vertices, std::span<cons
     bool valid = in_range_ && !faces.empty();
     if (valid)
         for (std::size_t i = 0; i < vertices.size(); ++i) {
-            // A coordinate that is not finite gives NaN, which equals nothing. No branch is needed.
+            // The difference is NaN, which equals nothing, if a coordinate is not finite. No branch is
+            // needed.
             const Vec3f difference = vertices[i] - vertices[i];
             valid &= is_used_[i] == 0 || difference == Vec3f{};
         }

@@ -19,7 +19,7 @@ namespace echinus {
 
 namespace {
 
-/// A face's edge seen from its lower vertex: twice the other, and 1 more if the face runs towards it.
+/// An edge of a face seen from its lower vertex: twice the other vertex, plus 1 if the face runs towards it.
 using HalfEdge = std::uint64_t;
 
 /// Calls visit(lower vertex, half edge) for all edges of faces except those from a vertex to itself.
@@ -39,7 +39,7 @@ int direction(HalfEdge edge) {
     return static_cast<int>(2 * (edge & 1U)) - 1;
 }
 
-/// Compares all pairs without a branch, the fastest way for the few edges of a usual vertex.
+/// Compares all pairs without a branch, which is fastest for the few edges of an ordinary vertex.
 template <std::size_t kCount>
 bool are_balanced(const HalfEdge* edges) {
     std::array<std::uint32_t, kCount> ends;
@@ -90,7 +90,8 @@ bool are_balanced(std::span<HalfEdge> edges) {
 } // namespace
 
 bool is_closed(std::span<const Triangle> faces, std::size_t vertex_count) {
-    std::vector<std::uint32_t> ends(vertex_count + 1); // 32 bits number three half edges of kMostFaces faces
+    std::vector<std::uint32_t> ends(vertex_count +
+                                    1); // 32 bits suffice for the three half edges of kMostFaces faces
     for_each_half_edge(faces, [&](std::uint32_t lower, HalfEdge) { ++ends[lower]; });
     std::uint32_t end = 0;
     for (std::uint32_t& offset : ends) {
@@ -115,8 +116,8 @@ namespace {
 
 constexpr std::uint32_t kNoEdge = std::numeric_limits<std::uint32_t>::max();
 
-/// The cells of a grid in which places lie. A double holds the number of a cell exactly, or where it is too
-/// large for that, float does not resolve cells, and a cell holds one place.
+/// The cells of a grid of points. A double represents the number of a cell exactly, or the number is so large
+/// that float does not resolve cells, and each cell contains at most one point.
 class Grid {
   public:
     using Cell = std::array<double, 3>;
@@ -124,7 +125,8 @@ class Grid {
     explicit Grid(double width)
         : cell_size_(width > 0 ? kWidths * width : std::numeric_limits<double>::min()) {}
 
-    /// Calls visit(cell) for each cell, at most eight, that holds places within the width of a place.
+    /// Calls visit(cell) for each cell, at most eight, that contains points within the given width of a
+    /// place.
     template <typename Visit>
     void for_each_near(const Vec3d& place, double width, const Visit& visit) const {
         const Cell low = cell_at(place - Vec3d{width, width, width});
@@ -147,7 +149,8 @@ class Grid {
     }
 
   private:
-    /// So large that few places are near two cells, so small that a cell holds few places that are not near.
+    /// Large enough for few points to be near more than one cell, and small enough for a cell to contain few
+    /// points that are not near each other.
     static constexpr double kWidths = 8;
 
     double cell_size_;
@@ -178,7 +181,8 @@ std::vector<std::uint32_t> find_open_vertices(std::span<const Triangle> faces, s
 std::vector<std::uint32_t> join_near_vertices(std::span<const Vec3f> vertices,
                                               std::span<const std::uint32_t> open, double width) {
     const Grid grid(width);
-    std::unordered_map<Grid::Cell, std::uint32_t, HashOfCell> last_in_cell; // which stands for itself
+    std::unordered_map<Grid::Cell, std::uint32_t, HashOfCell>
+        last_in_cell; // of the vertices that represent themselves
     std::vector<std::uint32_t> next(open.size(), kNoEdge), result(open.begin(), open.end());
     for (std::uint32_t i = 0; i < open.size(); ++i) {
         const Vec3d place(vertices[open[i]]);
@@ -214,14 +218,15 @@ namespace {
 
 constexpr std::uint32_t kUnused = std::numeric_limits<std::uint32_t>::max();
 
-/// The bits of a position, with -0 as 0: equal for equal positions, and ordered even for NaN.
+/// The bits of a position, with -0 as 0, so that equal positions have equal bits, and the order is total even
+/// with NaN.
 std::array<std::uint32_t, 3> position_key(const Vec3f& p) {
     // x + 0 is x, except that -0 + 0 is 0.
     return {bit_cast<std::uint32_t>(p.x + 0.0F), bit_cast<std::uint32_t>(p.y + 0.0F),
             bit_cast<std::uint32_t>(p.z + 0.0F)};
 }
 
-/// For each vertex the first vertex at the same position.
+/// For each vertex, the first vertex at the same position.
 std::vector<std::uint32_t> first_at_same_position(const std::vector<Vec3f>& vertices) {
     std::vector<std::uint32_t> order(vertices.size());
     std::iota(order.begin(), order.end(), 0U);

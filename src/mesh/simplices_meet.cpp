@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
-// Two simplices meet where an edge of one meets the other. Where each lies in the other's plane, all happens
-// in that plane, seen along an axis that leaves it an area.
+// Two simplices meet if an edge of one meets the other. If each lies in the other's plane, the test is done
+// in that plane, projected along an axis along which the simplices keep an area.
 
 namespace echinus {
 
@@ -19,12 +19,12 @@ bool overlap(T a, T b, T c, T d) {
     return std::max(std::min(a, b), std::min(c, d)) <= std::min(std::max(a, b), std::max(c, d));
 }
 
-// ---- On which side of a plane ----
+// ---- Sides of a plane ----
 
-/// As orientation() gives them; of corners that there are not: 0.
+/// Results of orientation(); 0 for corners that do not exist.
 using Sides = std::array<int, 3>;
 
-/// On which sides of the plane of `b` do the corners of `a` lie? All zero where `b` spans no plane.
+/// The sides of the plane of `b` on which the corners of `a` lie. All are 0 if `b` spans no plane.
 Sides sides_of(const Simplex& a, const Simplex& b) {
     Sides sides{};
     if (b.count == 3)
@@ -49,7 +49,7 @@ bool segments_meet(const Point2& p, const Point2& q, const Point2& r, const Poin
     return !on_one_line || (overlap(p.x, q.x, r.x, s.x) && overlap(p.y, q.y, r.y, s.y));
 }
 
-/// Do all corners of `b` lie off the line of an edge of `a`, on the side where `a` has none?
+/// Do all corners of `b` lie strictly on the side of the line of an edge of `a` on which `a` has no corner?
 bool edge_parts(const Simplex& a, const Simplex& b, int axis) {
     const auto seen = [axis](const Vec3f& p) { return seen_along(axis, p); };
     for (int i = 0; i < a.edge_count(); ++i) {
@@ -62,7 +62,7 @@ bool edge_parts(const Simplex& a, const Simplex& b, int axis) {
     return false;
 }
 
-/// Convex figures are apart where an edge of one parts them, unless both have no area.
+/// Convex figures, of which one has an area, are disjoint if and only if an edge of one separates them.
 /// @pre one has an area
 bool meet_in_plane(const Simplex& a, const Simplex& b, int axis) {
     return !edge_parts(a, b, axis) && !edge_parts(b, a, axis);
@@ -94,7 +94,7 @@ bool lines_meet(const Simplex& a, const Simplex& b) {
     return false;
 }
 
-/// @pre each lies in the other's plane, or the other spans none
+/// @pre each lies in the other's plane, or the other spans no plane
 bool meet_flat(const Simplex& a, const Simplex& b) {
     std::optional<int> axis = axis_that_shows(a);
     if (!axis) axis = axis_that_shows(b);
