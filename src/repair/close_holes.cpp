@@ -15,10 +15,11 @@ namespace echinus {
 
 namespace {
 
-/// The vertices around a hole, three or more and each once, in the order in which the faces that fill it run.
+/// The vertices around a hole, at least three, each once, in the direction in which the faces that fill it
+/// run.
 using HoleLoop = std::vector<std::uint32_t>;
 
-/// The half edges that are missing for every edge to be balanced, by the vertex where they start.
+/// The half edges that are missing for every edge to be balanced, grouped by the vertex at which they start.
 class MissingHalfEdges {
   public:
     explicit MissingHalfEdges(const TriangleMesh& mesh) : taken_(mesh.vertices.size() + 1) {
@@ -47,18 +48,20 @@ class MissingHalfEdges {
 
     bool starts_at(std::uint32_t vertex) const { return taken_[vertex] < end_[vertex]; }
 
-    /// Where the next half edge from a vertex leads. @pre starts_at(vertex)
+    /// Takes the next half edge from a vertex and returns its end. @pre starts_at(vertex)
     std::uint32_t take(std::uint32_t vertex) { return ends_[taken_[vertex]++]; }
 
   private:
-    std::vector<std::uint32_t> ends_; ///< grouped by the start
-    std::vector<std::size_t> taken_;  ///< [vertex_count + 1] the first in ends_ that is not taken yet
-    std::vector<std::size_t> end_;    ///< [vertex_count]
+    std::vector<std::uint32_t> ends_; ///< ends of half edges, grouped by their start
+    std::vector<std::size_t>
+        taken_; ///< [vertex_count + 1] index in ends_ of each vertex's first half edge that is not yet taken
+    std::vector<std::size_t> end_; ///< [vertex_count] index in ends_ after each vertex's last half edge
 };
 
-/// The edges along which more faces run one way than the other, as loops. They always form loops, since the
-/// edges of every single face do. Loops that touch at a vertex are parted there; where they touch at several,
-/// one of the ways to part them is taken. The same mesh gives the same loops. Time O(n log n).
+/// The edges along which more faces run in one direction than in the other, as loops. They always form loops,
+/// since the edges of every single face do. Loops that touch at a vertex are separated there; if they touch
+/// at several vertices, one of the possible separations is chosen. The same mesh always gives the same loops.
+/// Time O(n log n).
 /// @pre indices are in range
 std::vector<HoleLoop> find_hole_loops(const TriangleMesh& mesh) {
     constexpr std::size_t kNotOnPath = std::numeric_limits<std::size_t>::max();
@@ -68,7 +71,7 @@ std::vector<HoleLoop> find_hole_loops(const TriangleMesh& mesh) {
     for (std::uint32_t start = 0; start < mesh.vertices.size(); ++start) {
         std::vector<std::uint32_t> path{start};
         place_on_path[start] = 0;
-        // As many half edges end at a vertex as start there, so the path only ends where it began.
+        // As many half edges end at a vertex as start there, so the path can end only where it began.
         while (edges.starts_at(path.back())) {
             const std::uint32_t next = edges.take(path.back());
             if (place_on_path[next] == kNotOnPath) {
@@ -95,11 +98,12 @@ double area_of(const TriangleMesh& mesh, const Triangle& face) {
                    Vec3d(mesh.vertices[face[2]]));
 }
 
-/// The triangles of least area that fill a loop, by dynamic programming over its chords: Barequet and Sharir,
-/// "Filling Gaps in the Boundary of a Polyhedron" (1995). Time O(n^3), memory O(n^2).
+/// The triangles of least total area that fill a loop, found by dynamic programming over its chords: Barequet
+/// and Sharir, "Filling Gaps in the Boundary of a Polyhedron" (1995). Time O(n^3), memory O(n^2).
 ///
-/// Of fillings of equal area, which a flat hole has many of, the one with the shortest chords is taken.
-/// Chords that are edges of the mesh already and triangles without area are used where there is no other way.
+/// Of fillings with equal area, of which a flat hole has many, the one with the shortest chords is chosen.
+/// Chords that are already edges of the mesh and triangles without area are used only if there is no
+/// alternative.
 class LeastFilling {
   public:
     LeastFilling(const TriangleMesh& mesh, std::span<const EdgeUse> edge_uses, const HoleLoop& loop)
@@ -113,7 +117,7 @@ class LeastFilling {
         for (std::size_t reach = 2; reach < count_; ++reach)
             for (std::size_t i = 0; i + reach < count_; ++i) {
                 find_best_split(i, i + reach);
-                if (reach + 1 == count_) continue; // the last side of the loop is no chord
+                if (reach + 1 == count_) continue; // the closing edge of the loop is not a chord
                 constexpr double kLengthWeight = 1e-6;
                 const Vec3d chord = points_[i + reach] - points_[i];
                 const bool is_edge = !uses_of_edge(edge_uses, loop[i], loop[i + reach]).empty();
@@ -160,15 +164,15 @@ class LeastFilling {
 
     const HoleLoop& loop_;
     std::size_t count_;
-    double last_resort_ = 0; ///< a cost beyond that of any area
+    double last_resort_ = 0; ///< an additional cost greater than any area
     std::vector<Vec3d> points_;
-    std::vector<double> best_;         ///< [count * count] the least cost to fill from i to j > i
-    std::vector<std::uint16_t> split_; ///< [count * count] the corner between them
+    std::vector<double> best_;         ///< [count * count] the least cost of filling from i to j > i
+    std::vector<std::uint16_t> split_; ///< [count * count] the corner between i and j in that filling
 };
 
 static_assert(RepairOptions::kMaxHoleEdges <= std::numeric_limits<std::uint16_t>::max());
 
-/// For each vertex the area of the component that it belongs to.
+/// For each vertex, the area of the component to which it belongs.
 std::vector<double> component_areas(const TriangleMesh& mesh) {
     const Components components = find_components(mesh);
     std::vector<double> of_component(components.count), of_vertex(mesh.vertices.size());
@@ -181,11 +185,11 @@ std::vector<double> component_areas(const TriangleMesh& mesh) {
 }
 
 /// Fills the loops that are wanted, unless they are the rim of a sheet.
-/// @param is_wanted   of a loop, before the way to fill it is looked for
-/// @param is_in_order of the faces that would fill it
+/// @param is_wanted    tests a loop before its filling is computed
+/// @param is_in_order  tests the faces that would fill the loop
 template <typename IsWanted, typename IsInOrder>
 ClosedHoles fill_loops(TriangleMesh& mesh, const IsWanted& is_wanted, const IsInOrder& is_in_order) {
-    // A larger share is no hole in a surface, but the other side of a sheet.
+    // A filling with a larger share of the area is not a hole in a surface but the other side of a sheet.
     constexpr double kLargestShare = 1.0 / 3;
     const std::vector<HoleLoop> loops = find_hole_loops(mesh);
     if (loops.empty()) return {};
@@ -207,8 +211,8 @@ ClosedHoles fill_loops(TriangleMesh& mesh, const IsWanted& is_wanted, const IsIn
     return result;
 }
 
-/// Can faces no higher than that fill the loop? If so, they have no more area than this in total, and the
-/// loop encloses no more.
+/// Can faces whose heights are at most `width` fill the loop? If so, their total area is at most the bound
+/// below, and so is the area that the loop encloses.
 bool may_be_seam(const TriangleMesh& mesh, const HoleLoop& loop, double width) {
     const Vec3d first(mesh.vertices[loop[0]]);
     Vec3d twice_area;

@@ -16,16 +16,17 @@ namespace {
 
 using Faces = std::vector<std::uint32_t>;
 
-/// Looks at both sides of faces, a little off them.
+/// Tests points on both sides of faces, at a small distance from them.
 class Sides {
   public:
-    /// How much the corners of a face count for each place at which its sides are looked at.
+    /// The barycentric coordinates of the places of a face at which its sides are tested.
     static constexpr std::array<std::array<double, 3>, 4> kPlaces{
         {{1.0 / 3, 1.0 / 3, 1.0 / 3}, {0.8, 0.1, 0.1}, {0.1, 0.8, 0.1}, {0.1, 0.1, 0.8}}};
 
     Sides(const TriangleMesh& mesh, const ExactMap& map) : mesh_(mesh), map_(map) {}
 
-    /// Is the solid behind the faces (of this mesh) at one of the places, or before them?
+    /// For each of the faces (of this mesh), is the point behind it, or in front of it, at one of the places
+    /// inside the solid?
     std::vector<std::uint8_t> are_inside(const Faces& faces, std::size_t place, bool behind) const {
         std::vector<Vec3f> points;
         points.reserve(faces.size());
@@ -37,7 +38,7 @@ class Sides {
 
   private:
     Vec3f beside(std::uint32_t face, std::size_t place, bool behind) const {
-        // Eight lattice steps: snapping the mesh moves it by less than one.
+        // Eight lattice steps: snapping moves the mesh by less than one.
         const double offset = map_.view().radius * (behind ? -0x1p-16 : 0x1p-16);
         std::array<Vec3d, 3> corners;
         Vec3d point;
@@ -58,7 +59,7 @@ ExactMap map_of(const TriangleMesh& mesh) {
     return ExactMap::build(mesh, {.thread_count = 1});
 }
 
-/// The faces that have the solid on both sides, wherever their sides are looked at.
+/// The faces that have the solid on both sides at all places.
 Faces faces_within(const TriangleMesh& mesh, const Sides& sides) {
     Faces faces(mesh.faces.size());
     std::iota(faces.begin(), faces.end(), 0U);
@@ -73,7 +74,7 @@ Faces faces_within(const TriangleMesh& mesh, const Sides& sides) {
     return faces;
 }
 
-/// How many more faces run one way along an edge than the other.
+/// How many more faces run in one direction along an edge than in the other.
 template <typename Belongs>
 std::ptrdiff_t imbalance(std::span<const EdgeUse> uses, const Belongs& belongs) {
     std::ptrdiff_t sum = 0;
@@ -84,15 +85,15 @@ std::ptrdiff_t imbalance(std::span<const EdgeUse> uses, const Belongs& belongs) 
 
 enum class Patches { Closed, NotMissed };
 
-/// Of the faces, the patches of neighbours that are closed, or else those that no edge of another face
-/// misses: without them, none is less balanced than with them.
+/// Selects those patches of neighbours among the faces that are closed, or else those that no edge of another
+/// face misses: without them, no edge is less balanced than with them.
 Faces whole_patches(const TriangleMesh& mesh, const Faces& faces, Patches wanted) {
     std::vector<bool> is_candidate(mesh.faces.size());
     for (const std::uint32_t face : faces) is_candidate[face] = true;
     const auto goes = [&](std::uint32_t face) { return static_cast<bool>(is_candidate[face]); };
     const auto stays = [&](std::uint32_t face) { return !is_candidate[face]; };
     UnionFind patches(mesh.faces.size());
-    std::vector<std::uint32_t> spoilt; // a face of each patch that has to stay, more than once
+    std::vector<std::uint32_t> spoilt; // a face of each patch that must stay; perhaps several of a patch
     for_each_edge(sorted_edge_uses(mesh), [&](std::span<const EdgeUse> uses) {
         const auto first =
             std::find_if(uses.begin(), uses.end(), [&](const auto& u) { return goes(u.face); });
@@ -112,7 +113,7 @@ Faces whole_patches(const TriangleMesh& mesh, const Faces& faces, Patches wanted
     return whole;
 }
 
-/// Is everything as it was beside the faces that stay?
+/// Are both sides of all remaining faces unchanged?
 bool is_the_same_solid_without(const TriangleMesh& mesh, const Sides& before, const Faces& dropped) {
     Faces kept;
     TriangleMesh rest{mesh.vertices, {}};

@@ -15,7 +15,7 @@ namespace echinus {
 
 namespace {
 
-/// How many more faces run one way along an edge than the other, of all edges together.
+/// The sum over all edges of how many more faces run in one direction along the edge than in the other.
 std::size_t total_imbalance(const std::vector<EdgeUse>& edge_uses) {
     std::size_t total = 0;
     for_each_edge(edge_uses, [&](std::span<const EdgeUse> uses) {
@@ -31,7 +31,7 @@ std::size_t total_imbalance(const std::vector<EdgeUse>& edge_uses) {
 std::size_t orient_faces(TriangleMesh& mesh) {
     std::vector<EdgeUse> edge_uses = sorted_edge_uses(mesh);
     const Orientation orientation = find_orientation(edge_uses, mesh.faces.size());
-    // Of each patch, how many more faces run as its first one does than the other way.
+    // For each patch, how many more faces run like its first one than in the opposite direction.
     std::vector<std::ptrdiff_t> majority(orientation.is_closed.size());
     for (std::size_t face = 0; face < mesh.faces.size(); ++face)
         majority[orientation.patch_of_face[face]] += orientation.is_turned[face] ? -1 : 1;
@@ -39,8 +39,8 @@ std::size_t orient_faces(TriangleMesh& mesh) {
         const std::uint32_t patch = orientation.patch_of_face[face];
         return orientation.is_closed[patch] && orientation.is_turned[face] == (majority[patch] >= 0);
     };
-    // Faces of two patches may happen to balance each other. Only a smaller sum of imbalances counts, so that
-    // repair() comes to an end.
+    // Faces of two patches may happen to balance each other. Only a smaller sum of imbalances counts as
+    // progress, so that repair() terminates.
     const std::size_t before = total_imbalance(edge_uses);
     for (EdgeUse& use : edge_uses) use.ascending = use.ascending != is_to_turn(use.face);
     if (total_imbalance(edge_uses) >= before) return 0;
@@ -64,7 +64,7 @@ struct Component {
     bool flip = false;
 };
 
-/// By more than rounding makes of one that encloses nothing.
+/// Is the volume negative by more than the rounding error of a component that encloses nothing?
 bool has_negative_volume(const TriangleMesh& mesh, const Component& component) {
     constexpr double kRounding = 1e-12;
     double sum = 0, magnitude = 0;
@@ -76,13 +76,14 @@ bool has_negative_volume(const TriangleMesh& mesh, const Component& component) {
     return sum < -kRounding * magnitude;
 }
 
-/// Sets of faces joined by edges, numbered in the order of their first faces. Solids that touch in vertices
-/// are apart, and so are those that touch in edges, where each patch is closed without the other.
+/// Sets of faces that are connected by edges, numbered in the order of their first faces. Solids that touch
+/// only at vertices are separate, and so are solids that touch at edges if each patch is closed without the
+/// other.
 Components find_solids(std::span<const EdgeUse> edge_uses, std::size_t face_count) {
     const Orientation orientation = find_orientation(edge_uses, face_count);
     UnionFind sets(face_count);
     for_each_edge(edge_uses, [&](std::span<const EdgeUse> uses) {
-        const EdgeUse* first = nullptr; // of a patch that needs others
+        const EdgeUse* first = nullptr; // of a patch that is not closed by itself
         for (const EdgeUse& use : uses) {
             if (uses.size() != 2 && orientation.is_closed[orientation.patch_of_face[use.face]]) continue;
             if (first != nullptr) sets.join(first->face, use.face);
@@ -124,12 +125,12 @@ Vec3d centroid_of(const TriangleMesh& mesh, const Triangle& face) {
 }
 
 /// Does the inner component lie in the outer one? The centroid of one face decides for the whole component:
-/// components whose surfaces cross have no meaningful nesting. It is the first of a few that is not on the
-/// outer one. Vertices would not do: a cavity may have all of them on the surface around it.
+/// components whose surfaces cross have no meaningful nesting. It is the first of a few centroids that is not
+/// on the outer component. Vertices would not do: all vertices of a cavity may be on the surface around it.
 bool contains(const TriangleMesh& mesh, const Component& outer, const Component& inner) {
     if (&outer == &inner || !outer.closed || !outer.box.contains(inner.box)) return false;
     constexpr std::size_t kMostFaces = 16;
-    constexpr double kOnSurface = 1e-3; // from the next whole number
+    constexpr double kOnSurface = 1e-3; // distance of the winding number from the nearest integer
     const std::size_t count = std::min(kMostFaces, inner.faces.size());
     for (std::size_t i = 0; i < count; ++i) {
         const Triangle& face = inner.faces[i * inner.faces.size() / count];

@@ -17,8 +17,8 @@ namespace echinus {
 
 namespace {
 
-/// A mesh that loses faces and remembers which ones it had at the start. Faces that are added at the end are
-/// numbered after those.
+/// A mesh that loses faces and remembers their original numbers. Faces that are added at the end get the
+/// numbers after those.
 class ChangingMesh {
   public:
     explicit ChangingMesh(const TriangleMesh& mesh)
@@ -50,7 +50,7 @@ class ChangingMesh {
   private:
     TriangleMesh mesh_;
     std::uint32_t next_number_;
-    std::vector<std::uint32_t> original_number_; ///< [face_count], or fewer until the next drop()
+    std::vector<std::uint32_t> original_number_; ///< [face_count], or shorter until the next drop()
 };
 
 void require_in_range(const RepairOptions& options) {
@@ -69,7 +69,7 @@ void require_in_range(const RepairOptions& options) {
                     "finite length, or 0 for what maps do not resolve");
 }
 
-/// How wide a seam may be. @pre require_valid(mesh)
+/// The largest width of a seam. @pre require_valid(mesh)
 double width_of_seams(const TriangleMesh& mesh, double weld_distance) {
     const double radius = smallest_enclosing_sphere(used_positions(mesh)).radius;
     if (weld_distance > radius)
@@ -88,7 +88,7 @@ std::vector<std::uint32_t> find_collapsed_faces(const TriangleMesh& before, cons
     return collapsed;
 }
 
-/// How many vertices faces used before and do not any more.
+/// The number of vertices that faces used before but no longer use.
 std::size_t count_given_up(const TriangleMesh& before, const TriangleMesh& after) {
     const UsedVertices used_before(before.faces, before.vertices.size());
     const UsedVertices used_after(after.faces, after.vertices.size());
@@ -98,7 +98,7 @@ std::size_t count_given_up(const TriangleMesh& before, const TriangleMesh& after
     return count;
 }
 
-/// Welds seams, and drops what loses its area by that, unless that is all.
+/// Welds seams and drops the faces that lose their area by that, unless all faces would be dropped.
 void weld(ChangingMesh& mesh, double width, RepairReport& report) {
     TriangleMesh welded = with_common_corners(mesh.mesh(), width);
     const std::vector<std::uint32_t> collapsed = find_collapsed_faces(mesh.mesh(), welded);
@@ -116,9 +116,9 @@ bool drop(ChangingMesh& mesh, const std::vector<std::uint32_t>& faces, std::vect
     return !dropped.empty();
 }
 
-/// Does once what may have to be done again after the rest of it: a face can be turned, say, once the seam
-/// beside it is filled. Returns whether anything changed: then the edges are balanced better, or as well with
-/// fewer faces, so that there is an end of it.
+/// Performs once each repair that may have to be repeated after others: for example, a face may become
+/// orientable only once the seam next to it is filled. Returns whether anything changed. If so, the edges are
+/// balanced better, or equally well with fewer faces, so that repetition terminates.
 bool mend_once(ChangingMesh& mesh, const RepairOptions& options, double width, RepairReport& report) {
     bool changed = false;
     if (options.drop_duplicate_faces)
@@ -168,7 +168,7 @@ RepairedMesh repair(const TriangleMesh& mesh, const RepairOptions& options) {
         const std::size_t count_before = result.mesh().faces.size();
         report.sheets_thickened = thicken_sheets(result.mesh(), options.sheet_thickness);
         count_added(count_before);
-        require_valid(result.mesh()); // vertices may have left the range of float
+        require_valid(result.mesh()); // vertices may have exceeded the range of float
     }
     return {std::move(result.mesh()), std::move(report)};
 }

@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <vector>
 
-/// The repairs of RepairOptions, in source files by what they do.
+/// The repairs of RepairOptions; each kind has its own source file.
 namespace echinus {
 
 /// The faces that repair() drops as duplicates, see RepairOptions::drop_duplicate_faces; ascending.
@@ -18,7 +18,7 @@ std::vector<std::uint32_t> find_surplus_faces(const TriangleMesh& mesh);
 /// @pre indices are in range
 std::vector<std::uint32_t> find_doubled_patch_faces(const TriangleMesh& mesh);
 
-/// The faces to drop as loose (see RepairOptions::drop_loose_slivers); ascending.
+/// The faces that are dropped as loose slivers (see RepairOptions::drop_loose_slivers); ascending.
 /// @pre require_valid(mesh)
 std::vector<std::uint32_t> find_loose_slivers(const TriangleMesh& mesh);
 
@@ -27,7 +27,8 @@ std::vector<std::uint32_t> find_loose_slivers(const TriangleMesh& mesh);
 /// @pre require_valid(mesh)
 std::size_t orient_faces(TriangleMesh& mesh);
 
-/// Fills holes no wider than that with faces, which come after the others (see RepairOptions::close_seams).
+/// Fills holes no wider than `width` with new faces, which come after the others (see
+/// RepairOptions::close_seams).
 /// @returns how many were filled
 /// @pre require_valid(mesh)
 std::size_t fill_seams(TriangleMesh& mesh, double width);
@@ -36,7 +37,7 @@ struct ClosedHoles {
     std::size_t closed = 0, left = 0;
 };
 
-/// Fills holes with faces, which come after the others (see RepairOptions::max_hole_edges).
+/// Fills holes with new faces, which come after the others (see RepairOptions::max_hole_edges).
 /// @pre require_valid(mesh), max_edges <= RepairOptions::kMaxHoleEdges
 ClosedHoles close_small_holes(TriangleMesh& mesh, std::uint32_t max_edges);
 
@@ -49,7 +50,7 @@ std::size_t flip_inside_out_components(TriangleMesh& mesh);
 /// @pre require_valid(mesh)
 std::vector<std::uint32_t> find_inner_faces(const TriangleMesh& mesh);
 
-/// Turns sheets into solids (see RepairOptions::sheet_thickness).
+/// Turns sheets into solids of the given thickness (see RepairOptions::sheet_thickness).
 /// @returns how many sheets there were
 /// @throws Error InvalidOptions for a thickness that does not suit the mesh
 /// @pre require_valid(mesh), the thickness is finite and positive

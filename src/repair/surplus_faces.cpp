@@ -21,9 +21,9 @@ namespace echinus {
 
 namespace {
 
-/// How many more faces of a mesh run one way along each edge than the other: its *imbalance*, 0 at every edge
-/// of a closed mesh. repair() drops faces only where that leaves no edge with a larger imbalance, so it never
-/// opens a closed mesh.
+/// Maintains, for each edge of a mesh, how many more faces run along it in one direction than in the other:
+/// its *imbalance*, which is 0 at every edge of a closed mesh. repair() drops faces only if that leaves no
+/// edge with a larger imbalance, so it never opens a closed mesh.
 class EdgeBalance {
   public:
     using Faces = std::vector<std::uint32_t>;
@@ -33,17 +33,17 @@ class EdgeBalance {
     explicit EdgeBalance(const TriangleMesh& mesh);
 
     std::size_t edge_count() const { return sums_.size(); }
-    /// The three edges of a face, numbered from 0, or kNoEdge three times where two of its corners are equal.
+    /// The three edges of a face, numbered from 0, or kNoEdge three times if two of its corners are equal.
     std::span<const std::uint32_t, 3> edges_of(std::uint32_t face) const {
         return std::span(edges_of_face_).subspan(3 * std::size_t{face}).first<3>();
     }
 
-    /// By how much the imbalances fall in total if these faces, each named once, are dropped.
+    /// The decrease of the sum of all imbalances if these faces, each named once, are dropped.
     std::ptrdiff_t gain_without(const Faces& faces);
 
-    /// The faces of as many sets as can be dropped together without a larger imbalance anywhere. Sets at an
-    /// edge where all of them together would leave one are given up, and so on. Time O(n log n) of the faces
-    /// in the sets.
+    /// The faces of the sets that can be dropped together without increasing an imbalance. First all sets are
+    /// dropped; then, at each edge whose imbalance is larger than before, the sets there are restored, which
+    /// is repeated for the edges that this changes. Time O(n log n) in the number of faces in the sets.
     /// @param sets  disjoint
     Faces droppable(std::vector<Faces> sets);
 
@@ -81,7 +81,7 @@ void EdgeBalance::add(const Faces& faces, std::int32_t count) {
             if (edges_of_face_[place] != kNoEdge) sums_[edges_of_face_[place]] += count * directions_[place];
 }
 
-/// The edges of some faces, each once.
+/// The edges of some faces, without repetition.
 EdgeBalance::Faces EdgeBalance::edges_at(const Faces& faces) const {
     Faces edges;
     for (const std::uint32_t face : faces)
@@ -109,7 +109,7 @@ std::ptrdiff_t EdgeBalance::gain_without(const Faces& faces) {
 EdgeBalance::Faces EdgeBalance::droppable(std::vector<Faces> sets) {
     struct EdgeOfSet {
         std::uint32_t edge;
-        std::size_t set, before; ///< and the imbalance with all faces
+        std::size_t set, before; ///< the set, and the imbalance with all faces
     };
     std::vector<EdgeOfSet> uses;
     for (std::size_t set = 0; set < sets.size(); ++set)
@@ -118,7 +118,7 @@ EdgeBalance::Faces EdgeBalance::droppable(std::vector<Faces> sets) {
                      [](const EdgeOfSet& a, const EdgeOfSet& b) { return a.edge < b.edge; });
     for (const Faces& set : sets) add(set, -1);
 
-    // A face that is put back changes the balance of its edges, which may spoil other sets there.
+    // Restoring a face changes the balance of its edges, which may invalidate other sets there.
     std::vector<std::uint32_t> changed;
     for (const EdgeOfSet& use : uses) changed.push_back(use.edge);
     while (!changed.empty()) {
@@ -144,8 +144,8 @@ EdgeBalance::Faces EdgeBalance::droppable(std::vector<Faces> sets) {
 
 } // namespace
 
-// The faces that repair() drops from a surface before anything else: equal ones, doubled patches and loose
-// slivers; each where that leaves no edge less balanced.
+// The faces that repair() drops from a surface before anything else: equal faces, doubled patches and loose
+// slivers, each only if that leaves no edge less balanced.
 
 namespace {
 
@@ -153,18 +153,18 @@ using Faces = std::vector<std::uint32_t>;
 
 } // namespace
 
-// Faces on the same three vertices are a group. Which of them are surplus depends on the faces around them,
-// so groups that share an edge are decided together, and those that do not, apart.
+// Faces on the same three vertices form a group. Which of them are surplus depends on the faces around them,
+// so groups that share an edge are decided together, and others separately.
 
 namespace {
 
 /// Distinguishes the two orientations of a face on three vertices. Faces with two equal corners, which bound
-/// nothing, all count as the same orientation.
+/// nothing, all count as having the same orientation.
 bool is_ascending(const Triangle& face) {
     return int{face[0] < face[1]} + int{face[1] < face[2]} + int{face[2] < face[0]} == 2;
 }
 
-/// Groups that are connected by common edges.
+/// Patches of groups that are connected by common edges.
 std::vector<std::vector<Faces>> patches_of(const std::vector<Faces>& groups, const EdgeBalance& balance) {
     UnionFind sets(groups.size());
     std::vector<std::uint32_t> group_at(balance.edge_count(), EdgeBalance::kNoEdge);
@@ -181,8 +181,8 @@ std::vector<std::vector<Faces>> patches_of(const std::vector<Faces>& groups, con
     return patches;
 }
 
-/// Drops opposite faces in pairs, which changes no balance, and of the remaining ones, which run the same
-/// way, all but the first, where that leaves no edge less balanced.
+/// Drops opposite faces in pairs, which changes no balance, and all but the first of the remaining faces,
+/// which have the same orientation, if that leaves no edge less balanced.
 Faces without_opposites(const TriangleMesh& mesh, const std::vector<Faces>& patch, EdgeBalance& balance) {
     Faces surplus;
     std::vector<Faces> repeated;
@@ -201,7 +201,7 @@ Faces without_opposites(const TriangleMesh& mesh, const std::vector<Faces>& patc
     return surplus;
 }
 
-/// Drops all but the first face of each group, where that leaves no edge less balanced.
+/// Drops all but the first face of each group, if that leaves no edge less balanced.
 Faces without_later_ones(const std::vector<Faces>& patch, EdgeBalance& balance) {
     std::vector<Faces> later;
     for (const Faces& group : patch) later.emplace_back(group.begin() + 1, group.end());
@@ -234,12 +234,12 @@ std::vector<std::uint32_t> find_surplus_faces(const TriangleMesh& mesh) {
 //      |  /     |        |     \  |
 //      a ------ b        a ------ b
 //
-// Its edges identify it: each diagonal has exactly the two faces of its own patch, each side has a face of
-// either patch and at least one face of the surrounding surface. (A separate tetrahedron has two faces at
-// every edge and is left alone.) A face has at most one such patch, and a quadrilateral at most two. Dropping
-// one patch leaves the surface as its author meant it: the one without which the edges are balanced better.
-// Where the common side of two solids is divided along either diagonal, all edges are balanced, and both
-// patches stay.
+// Its edges identify it: each diagonal has exactly the two faces of its own patch, and each side has a face
+// of each patch and at least one face of the surrounding surface. (A separate tetrahedron has two faces at
+// every edge and is left unchanged.) A face is part of at most one such patch, and a quadrilateral has at
+// most two. Dropping one patch restores the intended surface: the patch without which the edges are balanced
+// better is dropped. If the common side of two solids is divided along different diagonals, all edges are
+// balanced, and both patches stay.
 
 namespace {
 
@@ -252,7 +252,7 @@ std::uint32_t corner_opposite(const TriangleMesh& mesh, const EdgeUse& use) {
     return mesh.faces[use.face][(use.corner + 2U) % 3];
 }
 
-/// The patch of the two faces at an edge, if the edge may be the diagonal of a doubled one.
+/// The patch of the two faces at an edge, if the edge may be the diagonal of a doubled patch.
 std::optional<Patch> patch_along(const TriangleMesh& mesh, std::span<const EdgeUse> all,
                                  std::span<const EdgeUse> diagonal) {
     if (diagonal.size() != 2) return std::nullopt;
@@ -282,7 +282,7 @@ std::vector<std::uint32_t> find_doubled_patch_faces(const TriangleMesh& mesh) {
         return std::tie(a.corners, a.faces) < std::tie(b.corners, b.faces);
     });
     EdgeBalance balance(mesh);
-    std::vector<Faces> doubled; // of equally good patches the later one
+    std::vector<Faces> doubled; // the later one of two equally good patches
     for (std::size_t i = 1; i < patches.size(); ++i) {
         if (patches[i].corners != patches[i - 1].corners) continue;
         const bool first_is_better =
@@ -294,8 +294,8 @@ std::vector<std::uint32_t> find_doubled_patch_faces(const TriangleMesh& mesh) {
 
 namespace {
 
-/// Are the corners on one line, as far as float tells? The height over the longest side is then no more than
-/// the corners are rounded.
+/// Are the corners collinear within the resolution of float? The height over the longest side is then at most
+/// the rounding error of the corners.
 bool has_no_area(const TriangleMesh& mesh, const Triangle& face) {
     constexpr double kRounding = 0x1p-23;
     double longest = 0, farthest = 0;

@@ -23,7 +23,8 @@ std::vector<bool> find_open_components(const Components& components, std::span<c
     return is_open;
 }
 
-/// Too thin, and both sides round to one place; thicker than the mesh is large, and the unit is another.
+/// Rejects a thickness so small that both sides would be rounded to the same position, or so large that the
+/// unit must be wrong.
 void require_suitable(const TriangleMesh& mesh, double thickness) {
     double farthest = 0;
     const std::vector<Vec3f> positions = used_positions(mesh);
@@ -31,7 +32,8 @@ void require_suitable(const TriangleMesh& mesh, double thickness) {
         farthest =
             std::max({farthest, std::fabs(double{p.x}), std::fabs(double{p.y}), std::fabs(double{p.z})});
     const double radius = smallest_enclosing_sphere(positions).radius;
-    const double least = std::max(radius * 0x1p-15, farthest * 0x1p-20); // 16 steps of a map or of floats
+    const double least =
+        std::max(radius * 0x1p-15, farthest * 0x1p-20); // 16 lattice steps of a map or steps of float
     if (thickness >= least && thickness <= radius) return;
     throw Error(ErrorCode::InvalidOptions,
                 "sheets cannot be given the thickness " + number_text(thickness) +
@@ -39,9 +41,9 @@ void require_suitable(const TriangleMesh& mesh, double thickness) {
                     ", from what its coordinates resolve to the radius of its bounding sphere");
 }
 
-/// The sheets of a mesh: faces of open components, joined across every edge at which just two of them meet
-/// and run opposite ways. Any other edge is a rim of each of its faces. The corners that faces so joined have
-/// at one vertex are one *fan*, with a front and a back vertex of its own.
+/// The sheets of a mesh: faces of open components, connected across every edge at which exactly two of them
+/// meet and run in opposite directions. Any other edge is a rim of each of its faces. The corners of
+/// connected faces at one vertex form a *fan*, which gets a front and a back vertex of its own.
 class Sheets {
   public:
     Sheets(TriangleMesh& mesh, double thickness)
@@ -68,7 +70,7 @@ class Sheets {
   private:
     static bool is_inner(std::span<const EdgeUse> uses) { return uses.size() == 2 && is_balanced(uses); }
 
-    /// Where a use of an edge begins, and where it ends.
+    /// The corners at which a use of an edge begins and ends.
     static std::uint32_t begin_of(const EdgeUse& use) { return 3 * use.face + use.corner; }
     static std::uint32_t end_of(const EdgeUse& use) { return 3 * use.face + (use.corner + 1U) % 3; }
 
@@ -91,10 +93,11 @@ class Sheets {
             if (is_sheet_[corner / 3]) visit(corner, fans_.find(corner));
     }
 
-    /// For each fan a direction along which all its faces move by at least the wanted distance, unless they
-    /// turn by more than 60 degrees from it.
+    /// For each fan, a displacement that moves all its faces by at least the given distance, unless their
+    /// normals differ from it by more than 60 degrees.
     std::vector<Vec3d> find_offsets(double distance) {
-        // Weights of Max, "Weights for Computing Vertex Normals from Facet Normals" (1999): no trigonometry.
+        // The weights of Max, "Weights for Computing Vertex Normals from Facet Normals" (1999), which require
+        // no trigonometry.
         std::vector<Vec3d> offsets(3 * face_count_), normals(face_count_);
         for_each_corner([&](std::uint32_t corner, std::uint32_t fan) {
             const std::uint32_t face = corner / 3;
@@ -120,7 +123,7 @@ class Sheets {
         return offsets;
     }
 
-    /// Of a fan that has no normal, any direction will do.
+    /// The unit vector, or 0 for 0.
     static Vec3d unit(const Vec3d& v) {
         const double size = length(v);
         return size > 0 ? v * (1 / size) : Vec3d{};
@@ -164,20 +167,20 @@ class Sheets {
         });
     }
 
-    /// Along a rim that runs from one fan to another.
+    /// Adds the faces along a rim that runs from one fan to another.
     void add_wall(std::uint32_t from, std::uint32_t to) {
         mesh_.faces.push_back({front_[to], front_[from], back_[from]});
         mesh_.faces.push_back({front_[to], back_[from], back_[to]});
     }
 
     TriangleMesh& mesh_;
-    std::vector<EdgeUse> edge_uses_; ///< of the sheets as they were
-    std::size_t face_count_;         ///< likewise
+    std::vector<EdgeUse> edge_uses_; ///< of the sheets in their original state
+    std::size_t face_count_;         ///< of the original mesh
     UnionFind fans_;                 ///< [3 * face_count] corners
     UnionFind sheets_;               ///< [face_count]
     std::vector<bool> is_sheet_;     ///< [face_count]
     std::vector<std::uint32_t> front_,
-        back_; ///< [3 * face_count] the vertices of each fan, by its first corner
+        back_; ///< [3 * face_count] the vertices of each fan, indexed by its first corner
 };
 
 } // namespace
