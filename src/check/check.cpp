@@ -20,12 +20,12 @@ namespace echinus {
 
 namespace {
 
-/// Finds the deepest of many vertices inside a map. Of two vertices, the depths differ by no more than the
-/// distance between them, so that one vertex bounds the depths of a box: few need the search for the nearest
-/// face, which is long far from the surface.
+/// Finds the deepest of many vertices inside a map. The depths of two vertices differ by at most the distance
+/// between them, so the depth of one vertex bounds those in a box: only a few vertices need the search for
+/// the nearest face, which is slow far from the surface.
 class DeepestVertex {
   public:
-    /// @param vertices  inside, at least one
+    /// @param vertices  at least one, all inside
     DeepestVertex(const ExactMapView& map, const std::vector<Vec3f>& points,
                   const std::vector<std::uint32_t>& vertices)
         : map_(map), points_(points), vertices_(vertices), tree_(boxes()) {}
@@ -75,7 +75,8 @@ class DeepestVertex {
 
     double bound_of(std::uint32_t index, Penetration& deepest) const {
         const BoxTree::Node& node = tree_.node(index);
-        // Depths are those of vertices snapped to the lattice, 1.9e-6 of the radius apart, and rounded.
+        // Depths are rounded, and are those of vertices snapped to a lattice with steps of 1.9e-6 of the
+        // radius.
         const double error = 1e-5 * double{map_.radius};
         return depth_at(node.begin, deepest) +
                node.box.farthest_distance(Vec3d(points_[vertex_at(node.begin)])) + error;
@@ -87,7 +88,7 @@ class DeepestVertex {
     BoxTree tree_;
 };
 
-/// The meshes with what is computed once for each.
+/// The meshes, and what is computed only once for each.
 class Meshes {
   public:
     Meshes(std::span<const TriangleMesh> meshes, const CheckOptions& options)
@@ -140,8 +141,8 @@ class Meshes {
         pair.b_in_a = penetration(pair.b, pair.a);
     }
 
-    /// Of a closed mesh. Null also for shapes that no map holds, such as tiny parts that are far apart: what
-    /// intersects is known nevertheless.
+    /// The map of a closed mesh. Null if the mesh is open or has a shape that no map can represent, such as
+    /// tiny parts that are far apart: its intersections are found nevertheless.
     const ExactMap* map_of(std::uint32_t mesh) {
         if (!is_mapped_[mesh]) {
             is_mapped_[mesh] = true;
@@ -177,7 +178,7 @@ class Meshes {
     const std::vector<std::string>& names_;
     unsigned thread_count_;
     std::vector<AlignedBox<float>> boxes_;
-    std::vector<bool> is_mapped_; ///< or was found to have no map
+    std::vector<bool> is_mapped_; ///< whether a map was built, or found to be impossible
     std::vector<std::optional<ExactMap>> maps_;
 };
 
