@@ -17,7 +17,7 @@ namespace echinus {
 
 namespace {
 
-/// Around the finite points, in the world; the others have no contact anyway.
+/// The box around the finite points in the world; other points have no contacts.
 template <typename T>
 AlignedBox<double> box_around(const StridedSpan<const Vec3<T>>& points) {
     AlignedBox<double> box;
@@ -26,8 +26,8 @@ AlignedBox<double> box_around(const StridedSpan<const Vec3<T>>& points) {
     return box;
 }
 
-/// The ball around a map's surface, beyond which nothing is inside. There is none around a map of the user's
-/// own, nor around an open surface, whose winding number may be anything anywhere.
+/// The ball around a map's surface, outside which nothing is inside. There is none for custom maps, nor for
+/// open surfaces, whose winding numbers may have any value anywhere.
 std::optional<Sphere> ball_around(const ExactMap& map) {
     if (!map.view().border.empty()) return {};
     return Sphere{Vec3d(map.view().centre), map.view().radius};
@@ -39,11 +39,12 @@ std::optional<Sphere> ball_around(const std::shared_ptr<const CustomMap>&) {
     return {};
 }
 
-/// False only where contacts_batch() finds nothing.
+/// Returns false only if contacts_batch() would find nothing.
 bool may_touch(const Collider& collider, const AlignedBox<double>& points, float margin_world) {
     const auto local = std::visit([](const auto& map) { return ball_around(map); }, collider.map.kind);
     if (!local) return true;
-    // Points are rounded to floats around the map's origin, its centre to doubles around the world's.
+    // Points are rounded to floats relative to the map's origin; its centre is rounded to doubles relative to
+    // the world's origin.
     constexpr double kFloats = 1e-6, kDoubles = 1e-14;
     const Vec3d &s = collider.scale, origin = origin_of(collider.map);
     const double size = std::max({std::fabs(s.x), std::fabs(s.y), std::fabs(s.z)});
@@ -60,7 +61,7 @@ struct OnStack {
     T& operator*() { return object; }
 };
 
-/// The pieces for maps of the user's own are too large for a small stack.
+/// The pieces for custom maps are too large for a small stack.
 template <typename T>
 using PieceMemory = std::conditional_t<sizeof(T) <= 10'000, OnStack<T>, OnScratch<T>>;
 
@@ -78,14 +79,14 @@ void for_each_piece(const FrameChange& frame, const StridedSpan<const Vec3<T>>& 
     }
 }
 
-/// Calls `body` with the queries of the collider's kind of map.
+/// Calls `body` with the queries for the collider's kind of map.
 template <typename Body>
 auto with_queries(const Collider& collider, const FrameChange& frame, float margin_world, const Body& body) {
     return std::visit([&](const auto& map) { return body(queries(frame, map, margin_world)); },
                       collider.map.kind);
 }
 
-/// @param point  the contact's, in the precision of the world
+/// @param point  the point of the contact, in the precision of the world
 template <typename T>
 void write(const Contact& contact, const Vec3<T>& point, std::size_t particle, std::size_t collider,
            std::size_t at, const ContactArrays<T>& arrays) {
@@ -101,7 +102,8 @@ void write(const Contact& contact, const Vec3<T>& point, std::size_t particle, s
     put(arrays.colliders, static_cast<std::uint32_t>(collider));
 }
 
-/// Of one collider. @param count  contacts of those before it; out: with its own
+/// Appends the contacts of one collider. @param count  in: the contacts of previous colliders; out: including
+/// its own
 template <typename T>
 void append_contacts(const Collider& collider, std::size_t number, const StridedSpan<const Vec3<T>>& points,
                      float margin, const ContactArrays<T>& contacts, std::size_t& count) {
@@ -125,7 +127,7 @@ void append_contacts(const Collider& collider, std::size_t number, const Strided
 template <typename T>
 std::size_t gather_contacts(std::span<const Collider> colliders, const StridedSpan<const Vec3<T>>& points,
                             float margin, const ContactArrays<T>& contacts) {
-    std::optional<AlignedBox<double>> box; // one collider would take it for itself alone
+    std::optional<AlignedBox<double>> box; // with one collider, computing the box costs more than it saves
     if (colliders.size() > 1) box = box_around(points);
     std::size_t count = 0;
     for (std::size_t k = 0; k < colliders.size(); ++k)

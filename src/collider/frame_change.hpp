@@ -28,7 +28,7 @@ inline Vec3d times(const Vec3d& a, const Vec3d& b) {
     return {a.x * b.x, a.y * b.y, a.z * b.z};
 }
 
-/// Where the local frame of a collider's map begins; 0 for a map of the user's own.
+/// The origin of the local frame of a collider's map; 0 for a custom map.
 inline Vec3d origin_of(const std::shared_ptr<const CustomMap>&) {
     return {};
 }
@@ -39,7 +39,7 @@ inline Vec3d origin_of(const ColliderMap& map) {
     return std::visit([](const auto& kind) { return origin_of(kind); }, map.kind);
 }
 
-/// A pose and a scale, ready to be applied to many points: nine products instead of a quaternion.
+/// A pose and a scale, prepared for many points: a matrix of nine products in place of a quaternion.
 class FrameChange {
   public:
     FrameChange(const RigidTransform& pose, const Vec3d& scale)
@@ -53,7 +53,7 @@ class FrameChange {
         uniform_ = scale.x > 0 && scale.x == scale.y && scale.x == scale.z;
     }
     explicit FrameChange(const Collider& collider) : FrameChange(collider, collider.pose) {}
-    /// The collider's, in another pose.
+    /// The frame change of the collider in a given pose.
     FrameChange(const Collider& collider, const RigidTransform& pose) : FrameChange(pose, collider.scale) {
         const Vec3d origin = origin_of(collider.map);
         if (origin != Vec3d{}) translation_ = pose.to_world(times(origin, scale_));
@@ -67,23 +67,24 @@ class FrameChange {
     Vec3<T> point_to_world(const Vec3f& point_local) const {
         return Vec3<T>(rotation_ * times(Vec3d(point_local), scale_) + translation_);
     }
-    /// A unit normal of the scaled surface, still along the map's axes.
+    /// Rotates a unit normal of the scaled surface, given along the map's axes, to the world.
     Vec3f normal_to_world(const Vec3f& normal) const { return Vec3f(rotation_ * Vec3d(normal)); }
-    /// The scaled surface's normal from the unscaled one's, along the map's axes: by the inverse transpose of
-    /// the scale, which lets normals that point out of the solid do so in its mirror image too.
+    /// Converts a normal of the unscaled surface to one of the scaled surface, both along the map's axes. It
+    /// multiplies by the inverse transpose of the scale, so that outward normals stay outward in a mirror
+    /// image, too.
     Vec3f scaled_normal(const Vec3f& normal) const {
         const Vec3d scaled = times(Vec3d(normal), inverse_scale_);
         const double size = length(scaled);
         return size > 0 ? Vec3f(scaled * (1 / size)) : Vec3f{};
     }
-    /// World length of a local step, per unit of length.
+    /// The length in the world of a local displacement, divided by its local length.
     double stretch_along(const Vec3d& step_local) const {
         const double size = length(step_local);
         return size > 0 ? length(times(step_local, scale_)) / size : least_scale_;
     }
-    /// No step is shortened more than by this.
+    /// The smallest factor by which a length changes.
     double least_scale() const { return least_scale_; }
-    /// Three positive scales of one size: all lengths change by it, and normals not at all.
+    /// Three equal positive scales: all lengths change by the same factor, and normals do not change.
     bool uniform() const { return uniform_; }
     const Vec3d& scale() const { return scale_; }
 

@@ -12,14 +12,15 @@
 #include <memory>
 #include <span>
 
-/// How each kind of map is asked in its own frame, and how its contacts are taken to the world: in place,
-/// since most particles have no contact, and copying their answers would take longer than this.
+/// How each kind of map is queried in its own frame, and how its contacts are converted to the world. The
+/// conversion is done in place, since most particles have no contact, and copying their answers would take
+/// longer.
 namespace echinus {
 
-/// An exact map knows the stretch itself: only the pose is left to do.
+/// An exact map handles the stretch itself, so that only the pose remains to be applied.
 class ExactQueries {
   public:
-    /// Points of a batch are taken to the local frame in pieces that stay in the first-level cache.
+    /// Points of a batch are converted to the local frame in pieces that stay in the first-level cache.
     static constexpr std::size_t kPieceSize = 256;
 
     ExactQueries(const FrameChange& frame, const ExactMap& map, float margin_world = 0)
@@ -56,7 +57,7 @@ class RadialQueries {
 
     RadialQueries(const FrameChange& frame, const DistanceMap& map, float margin_world = 0)
         : frame_(frame), map_(map.view()), margin_world_(margin_world),
-          // Along no ray is a world length longer in the local frame.
+          // The largest local length that corresponds to the margin along any ray.
           margin_local_(static_cast<float>(margin_world / frame.least_scale())) {}
 
     bool ask_contains(const Vec3f& point_local) const { return contains(map_, point_local); }
@@ -79,8 +80,8 @@ class RadialQueries {
     }
 
   private:
-    /// Depth along the ray, and the normal. What lies within the widest local margin may be beyond the
-    /// world's.
+    /// Scales the depth, measured along the ray, and the normal. A contact within the largest local margin
+    /// may be beyond the margin in the world.
     void stretch(Contact& contact, const Vec3f& point_local) const {
         const Vec3d from_centre = Vec3d(point_local) - Vec3d(map_.centre);
         const Vec3d ray = from_centre == Vec3d{} ? Vec3d(contact.point) - Vec3d(point_local) : from_centre;
@@ -94,10 +95,10 @@ class RadialQueries {
     float margin_world_, margin_local_;
 };
 
-/// Nothing that a custom map answers is taken on trust.
+/// Does not rely on the answers of a custom map.
 class CustomQueries {
   public:
-    /// Larger than the others, since it may have to set something up for each call.
+    /// Larger than for the other kinds, since each call of a custom map may have a fixed cost.
     static constexpr std::size_t kPieceSize = 4096;
 
     CustomQueries(const FrameChange& frame, const std::shared_ptr<const CustomMap>& map,
@@ -122,7 +123,7 @@ class CustomQueries {
     void ask_contacts(std::span<const Vec3f> points_local, std::span<Contact> contacts) const {
         map_.contacts_batch(points_local, margin_local_, contacts);
     }
-    /// The scaled normal is a unit normal, whatever length it had.
+    /// The scaled normal is a unit normal, whatever the length of the map's normal.
     void to_world(Contact& contact, const Vec3f& point_local, const Vec3f& point_world) const {
         if (!is_usable(contact, point_local)) {
             contact = {};
@@ -150,7 +151,7 @@ class CustomQueries {
     float margin_local_;
 };
 
-// The kind of queries for each kind of map; by name, so that a visitor can choose.
+// The queries for each kind of map; overloaded, so that a visitor can choose.
 
 inline ExactQueries queries(const FrameChange& frame, const ExactMap& map, float margin_world = 0) {
     return {frame, map, margin_world};
