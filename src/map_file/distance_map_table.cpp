@@ -63,8 +63,8 @@ flatbuffers::Offset<schema::DistanceMapStatistics> write_statistics(flatbuffers:
 flatbuffers::Offset<schema::DistanceMap> write_table(flatbuffers::FlatBufferBuilder& builder,
                                                      const DistanceMap& map) {
     const DistanceMapView& view = map.view();
-    // FlatBuffers are built from the back. The offsets go first because they need no padding behind them: the
-    // last byte of the file is then a used one, and every truncation is detected.
+    // FlatBuffers are built from back to front. The offsets are written first because they need no padding
+    // after them: the last byte of the file is then in use, so that every truncation is detected.
     const auto entry_offsets = write_array(builder, view.entry_offsets);
     const auto entries_float32 = write_if_any(builder, view.entries_float32);
     const auto entries_unorm16 = write_if_any(builder, view.entries_unorm16);

@@ -78,7 +78,7 @@ flatbuffers::Offset<schema::ExactMapStatistics> write_statistics(flatbuffers::Fl
 flatbuffers::Offset<schema::ExactMap> write_table(flatbuffers::FlatBufferBuilder& builder,
                                                   const ExactMap& map) {
     const ExactMapView& view = map.view();
-    // The offsets go first, as in a distance map, so that every truncation is detected.
+    // The offsets are written first, as in a distance map, so that every truncation is detected.
     const auto band_offsets = write_array(builder, view.band_offsets);
     const auto bands = write_array(builder, view.bands);
     const auto winding_below = write_if_any(builder, view.winding_below);
@@ -112,7 +112,7 @@ ExactMap read_table(const schema::ExactMap& stored, std::uint64_t source_hash,
     };
     const auto kept = std::make_shared<Kept>(Kept{std::move(storage), {}});
     set_outer_limits(view.band_offsets, view.bands,
-                     kept->outer_limits); // follow from the bands, so files omit them
+                     kept->outer_limits); // files omit them, since they follow from the bands
     view.outer_limits = kept->outer_limits;
     return {view, statistics, source_hash, kept};
 }

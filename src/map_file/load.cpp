@@ -50,7 +50,7 @@ void require_known_version(const schema::AnyVersion& file, const std::string& na
                     " and " + std::to_string(kMapFileVersion) + kBuildAgain);
 }
 
-/// A map has an origin where its version says so, and only there.
+/// A map must have an origin if its version requires one, and otherwise must not have one.
 void require_origin(const schema::Origin* origin, bool wanted, const std::string& name) {
     const Vec3d place = from_stored(origin);
     if (!wanted && origin != nullptr) Checker(name).fail("it has an origin, which its version does not have");
@@ -58,11 +58,11 @@ void require_origin(const schema::Origin* origin, bool wanted, const std::string
         Checker(name).fail("its origin is missing, 0 or not finite");
 }
 
-/// The root table, after checking structure and version.
+/// The root table, after its structure and version were checked.
 const schema::MapFile& verified_root(std::span<const std::byte> bytes, const std::string& name) {
     require_map_file(bytes, name);
     const bool too_large = bytes.size() >= FLATBUFFERS_MAX_BUFFER_SIZE;
-    // Another version may have another structure, so check its number first.
+    // Another version may have a different structure, so its number is checked first.
     if (too_large || !has_sound_structure<schema::AnyVersion>(bytes)) fail_structure(name, bytes.size());
     require_known_version(*flatbuffers::GetRoot<schema::AnyVersion>(bytes.data()), name);
     if (!has_sound_structure<schema::MapFile>(bytes)) fail_structure(name, bytes.size());
@@ -74,7 +74,7 @@ CheckBeginning check_beginning_of(const std::filesystem::path& path) {
         [name = path.string()](std::span<const std::byte> beginning) { require_map_file(beginning, name); };
 }
 
-/// The command line's name of a kind of map.
+/// The command line's name for a kind of map.
 constexpr const char* name_of(const DistanceMap*) {
     return "distance";
 }

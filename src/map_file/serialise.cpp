@@ -12,7 +12,7 @@ namespace {
 
 using Builder = flatbuffers::FlatBufferBuilder;
 
-/// FlatBuffers counts bytes in 31 bits; everything except the arrays takes a few hundred bytes.
+/// FlatBuffers counts bytes in 31 bits; everything except the arrays takes only a few hundred bytes.
 void require_file_size(std::size_t byte_count) {
     constexpr std::size_t kRoomForTheRest = 4096;
     if (byte_count <= FLATBUFFERS_MAX_BUFFER_SIZE - kRoomForTheRest) return;

@@ -17,19 +17,19 @@ namespace echinus {
 
 static_assert(std::endian::native == std::endian::little, "map files are little-endian and used in place");
 
-/// Is the map's frame another one than that of its mesh's file?
+/// Does the map's frame differ from that of its mesh's file?
 template <typename Map>
 bool has_origin(const Map& map) {
     return map.view().origin != Vec3d{};
 }
 
-/// The schema's enumerators equal those of the public headers, so values need no translation.
+/// The enumerators of the schema equal those of the public headers, so values need no conversion.
 template <typename Stored, typename Ours>
 constexpr bool same_value(Stored stored, Ours ours) {
     return static_cast<int>(stored) == static_cast<int>(ours);
 }
 
-/// The schema's type for the elements of an array of T: the same for numbers, another one for structs.
+/// The schema's type for the elements of an array of T: T itself for numbers, a different type for structs.
 template <typename T>
 struct StoredAs {
     using Type = T;
@@ -51,7 +51,7 @@ flatbuffers::Offset<StoredArray<T>> write_array(flatbuffers::FlatBufferBuilder& 
         return builder.CreateVectorOfStructs(first, array.size());
 }
 
-/// The same for an optional array: an empty one is left out.
+/// write_array() for an optional array: an empty one is omitted.
 template <typename T>
 flatbuffers::Offset<StoredArray<T>> write_if_any(flatbuffers::FlatBufferBuilder& builder,
                                                  std::span<const T> array) {
@@ -59,7 +59,7 @@ flatbuffers::Offset<StoredArray<T>> write_if_any(flatbuffers::FlatBufferBuilder&
     return write_array(builder, array);
 }
 
-/// Reads in place. An absent array is empty.
+/// Reads an array in place. An absent array becomes empty.
 template <typename T>
 void read_array(const StoredArray<T>* stored, std::span<const T>& array) {
     if (stored != nullptr) array = {reinterpret_cast<const T*>(stored->Data()), stored->size()};
@@ -68,7 +68,7 @@ void read_array(const StoredArray<T>* stored, std::span<const T>& array) {
 inline schema::Origin to_stored(const Vec3d& origin) {
     return {origin.x, origin.y, origin.z};
 }
-/// Of a map that has none, 0.
+/// The origin of a map; 0 if it has none.
 inline Vec3d from_stored(const schema::Origin* origin) {
     return origin == nullptr ? Vec3d{} : Vec3d{origin->x(), origin->y(), origin->z()};
 }
@@ -86,9 +86,9 @@ inline Vec3f from_stored(const schema::Point& point) {
 flatbuffers::Offset<schema::DistanceMap> write_table(flatbuffers::FlatBufferBuilder& builder,
                                                      const DistanceMap& map);
 
-/// Reads in place, after checking the meaning.
+/// Reads a map in place, after checking that its values are valid.
 /// @pre the table's structure is sound; `storage` keeps its bytes alive
-/// @throws Error Damaged; the sentence begins with `name` and names the field or the array and the index
+/// @throws Error Damaged; the message begins with `name` and names the field, or the array and the index
 DistanceMap read_table(const schema::DistanceMap& stored, std::uint64_t source_hash,
                        std::shared_ptr<const void> storage, const std::string& name);
 
@@ -97,9 +97,9 @@ DistanceMap read_table(const schema::DistanceMap& stored, std::uint64_t source_h
 flatbuffers::Offset<schema::ExactMap> write_table(flatbuffers::FlatBufferBuilder& builder,
                                                   const ExactMap& map);
 
-/// Reads in place, after checking the meaning.
+/// Reads a map in place, after checking that its values are valid.
 /// @pre the table's structure is sound; `storage` keeps its bytes alive
-/// @throws Error Damaged; the sentence begins with `name` and names the field or the array and the index
+/// @throws Error Damaged; the message begins with `name` and names the field, or the array and the index
 ExactMap read_table(const schema::ExactMap& stored, std::uint64_t source_hash,
                     std::shared_ptr<const void> storage, const std::string& name);
 
