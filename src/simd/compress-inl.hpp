@@ -1,4 +1,4 @@
-// Included once for each instruction set, as Highway wants it: no guard against a second time.
+// Included once per instruction set, as Highway requires; hence the unusual include guard.
 #if defined(ECHINUS_COMPRESS_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef ECHINUS_COMPRESS_INL
 #undef ECHINUS_COMPRESS_INL
@@ -13,11 +13,11 @@
 #include <cstddef>
 #include <cstdint>
 
-#ifndef ECHINUS_COMPRESS_TABLE // one for all instruction sets
+#ifndef ECHINUS_COMPRESS_TABLE // shared by all instruction sets
 #define ECHINUS_COMPRESS_TABLE
 namespace echinus {
 
-/// For up to eight lanes, one bit each: the chosen lanes in their order, then the others.
+/// For each choice of up to eight lanes, one bit each: the chosen lanes in order, then the others.
 inline constexpr auto kCompressTable = [] {
     std::array<std::array<std::uint8_t, 8>, 256> table{};
     for (std::size_t bits = 0; bits < table.size(); ++bits) {
@@ -35,10 +35,10 @@ inline constexpr auto kCompressTable = [] {
 HWY_BEFORE_NAMESPACE();
 namespace echinus::HWY_NAMESPACE {
 
-#if HWY_TARGET == HWY_AVX3 || HWY_TARGET == HWY_SCALAR // with an instruction for it, or nothing to move
+#if HWY_TARGET == HWY_AVX3 || HWY_TARGET == HWY_SCALAR // these have an instruction for it, or only one lane
 
-/// Moves the chosen lanes of vectors to their beginning; what follows them is arbitrary. Highway 1.0 copies
-/// its table to the stack each time.
+/// Moves the chosen lanes of vectors to the beginning; the lanes after them are arbitrary. Highway 1.0 would
+/// copy its table to the stack for each call.
 class Compressor {
   public:
     explicit Compressor(IntMask chosen) : chosen_(chosen) {}

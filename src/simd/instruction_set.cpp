@@ -16,14 +16,14 @@ namespace echinus {
 
 namespace {
 
-constexpr std::int64_t kScalar = 0; // not a Highway target: the reference
+constexpr std::int64_t kScalar = 0; // the reference; not a Highway target
 
 struct InstructionSet {
     std::string_view name;
     std::int64_t target;
 };
 
-/// The widest first.
+/// Ordered from the widest to the narrowest.
 constexpr std::array kInstructionSets {
 #if HWY_ARCH_X86
     InstructionSet{"avx512", HWY_AVX3}, InstructionSet{"avx2", HWY_AVX2}, InstructionSet{"sse4", HWY_SSE4},
@@ -51,7 +51,7 @@ const InstructionSet* initial_choice() {
     return std::find_if(kInstructionSets.begin(), kInstructionSets.end(), is_available);
 }
 
-/// The set in use: our value, and Highway's.
+/// The instruction set in use, in our representation and in Highway's.
 class Choice {
   public:
     Choice() { set(initial_choice()); }

@@ -1,4 +1,4 @@
-// Included once for each instruction set, as Highway wants it: no guard against a second time.
+// Included once per instruction set, as Highway requires; hence the unusual include guard.
 #if defined(ECHINUS_LANES_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef ECHINUS_LANES_INL
 #undef ECHINUS_LANES_INL
@@ -19,7 +19,7 @@
 HWY_BEFORE_NAMESPACE();
 namespace echinus::HWY_NAMESPACE {
 
-/// Vectors as wide as the instruction set has them.
+/// Vectors of the instruction set's full width.
 using Floats = hn::ScalableTag<float>;
 using Ints = hn::RebindToSigned<Floats>;
 using FloatLanes = hn::Vec<Floats>;
@@ -47,7 +47,7 @@ HWY_INLINE PointLanes splat(const Vec3f& v) {
 HWY_INLINE IntLanes splat_int(std::int32_t value) {
     return hn::Set(kInt, value);
 }
-/// @pre none is above 2^31
+/// @pre no index is above 2^31
 HWY_INLINE IntLanes load_indices(const std::uint32_t* from) {
     return hn::BitCast(kInt, hn::LoadU(hn::RebindToUnsigned<Ints>(), from));
 }
@@ -73,15 +73,15 @@ HWY_INLINE FloatMask is_odd(IntLanes value) {
     return as_mask(hn::TestBit(value, splat_int(1)));
 }
 
-#if HWY_TARGET != HWY_SCALAR // where the reference is used instead
+#if HWY_TARGET != HWY_SCALAR // HWY_SCALAR uses the reference instead
 
-/// Four numbers for each lane: at[k] holds the k-th of each.
+/// Four numbers per lane: at[k] holds the k-th number of each.
 template <typename D>
 struct Columns {
     std::array<hn::Vec<D>, 4> at;
 };
 
-/// The rows of every fourth lane, from the first on, as the blocks of one vector.
+/// The rows of every fourth lane, starting with lane `first`, as the blocks of one vector.
 template <typename D, typename LoadRow>
 HWY_INLINE hn::Vec<D> load_blocks(D d, const LoadRow& load_row, std::size_t first) {
     if constexpr (hn::MaxLanes(D()) == 4) {
@@ -93,9 +93,9 @@ HWY_INLINE hn::Vec<D> load_blocks(D d, const LoadRow& load_row, std::size_t firs
     }
 }
 
-/// Loads a row of four numbers for each lane and turns rows to columns. Where there are instructions that
-/// gather, many processors take as long for one column by these as this takes for all four, or longer.
-/// @param load_row  of a lane: its row, as hn::Vec<hn::FixedTag<hn::TFromD<D>, 4>>
+/// Loads a row of four numbers for each lane and transposes rows to columns. Even on processors with gather
+/// instructions, gathering one column often takes at least as long as this does for all four.
+/// @param load_row  returns the row of a lane, as hn::Vec<hn::FixedTag<hn::TFromD<D>, 4>>
 template <typename D, typename LoadRow>
 HWY_INLINE Columns<D> load_rows(D d, const LoadRow& load_row) {
     constexpr hn::Repartition<std::uint64_t, D> pairs;

@@ -1,4 +1,4 @@
-// Included once for each instruction set, as Highway wants it: no guard against a second time.
+// Included once per instruction set, as Highway requires; hence the unusual include guard.
 #if defined(ECHINUS_VEC3_LANES_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef ECHINUS_VEC3_LANES_INL
 #undef ECHINUS_VEC3_LANES_INL
@@ -16,10 +16,10 @@ namespace echinus::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
 /// Vec3 of several particles or faces at once: a Highway vector for each component. The operations are those
-/// of Vec3 (geometry.hpp) in the same order, hence the same bits.
+/// of Vec3 (geometry.hpp) in the same order, hence with the same bits.
 ///
-/// Always with values: for Arm, GCC compiles the initialisation of an empty one for a processor without
-/// vectors, which is an error.
+/// Must always be initialised with values: for Arm, GCC compiles the initialisation of an empty object for a
+/// processor without vectors, which is an error.
 template <typename Lanes>
 struct Vec3Lanes {
     Lanes x, y, z;
@@ -41,7 +41,7 @@ template <typename Lanes>
 HWY_INLINE Vec3Lanes<Lanes> operator*(const Vec3Lanes<Lanes>& a, Lanes s) {
     return {hn::Mul(a.x, s), hn::Mul(a.y, s), hn::Mul(a.z, s)};
 }
-/// Component by component.
+/// The componentwise product.
 template <typename Lanes>
 HWY_INLINE Vec3Lanes<Lanes> times(const Vec3Lanes<Lanes>& a, const Vec3Lanes<Lanes>& b) {
     return {hn::Mul(a.x, b.x), hn::Mul(a.y, b.y), hn::Mul(a.z, b.z)};
@@ -69,8 +69,8 @@ HWY_INLINE Vec3Lanes<Lanes> choose(Mask mask, const Vec3Lanes<Lanes>& yes, const
             hn::IfThenElse(mask, yes.z, no.z)};
 }
 
-// With fused multiply-add where there are instructions for it: faster, and other bits on other machines. Only
-// for bounds that allow for the rounding of either form.
+// Uses fused multiply-add if there are instructions for it, which is faster but gives different bits on
+// different machines. Only for bounds that allow for the rounding of either form.
 
 template <typename Lanes>
 HWY_INLINE Lanes fused_dot(const Vec3Lanes<Lanes>& a, const Vec3Lanes<Lanes>& b) {

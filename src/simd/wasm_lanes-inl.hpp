@@ -1,4 +1,4 @@
-// Included once for each instruction set, as Highway wants it: no guard against a second time.
+// Included once per instruction set, as Highway requires; hence the unusual include guard.
 #if defined(ECHINUS_WASM_LANES_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef ECHINUS_WASM_LANES_INL
 #undef ECHINUS_WASM_LANES_INL
@@ -11,14 +11,14 @@
 #include <cstddef>
 #include <cstdint>
 
-#if HWY_TARGET == HWY_WASM && !HWY_HAVE_FLOAT64 // of the version that this makes up for
+#if HWY_TARGET == HWY_WASM && !HWY_HAVE_FLOAT64 // only for the version that lacks these operations
 
 #include <wasm_simd128.h>
 
-/// Operations of our kernels that WebAssembly has and Highway's target for it (1.0) lacks: vectors of two
-/// doubles; and lookups of lanes by an instruction, where Highway moves byte by byte through memory. Under
-/// Highway's names and in its namespace, where its templates look for them.
-/// @pre vectors and masks are whole, 16 bytes, except where float and double meet
+/// Operations of our kernels that WebAssembly supports but Highway's target for it (1.0) lacks: vectors of
+/// two doubles, and lane lookups by an instruction, which Highway implements byte by byte through memory.
+/// They have Highway's names and are in its namespace, where its templates find them.
+/// @pre vectors and masks are full, 16 bytes, except in conversions between float and double
 HWY_BEFORE_NAMESPACE();
 namespace hwy::HWY_NAMESPACE {
 
@@ -48,7 +48,7 @@ HWY_API WholeDoubleVec Sqrt(WholeDoubleVec v) {
 HWY_API WholeDoubleVec Abs(WholeDoubleVec v) {
     return {wasm_f64x2_abs(v.raw)};
 }
-/// To the nearest whole number, halves to the even one.
+/// Rounds to the nearest integer, halves to the even one.
 HWY_API WholeDoubleVec Round(WholeDoubleVec v) {
     return {wasm_f64x2_nearest(v.raw)};
 }
