@@ -84,7 +84,7 @@ int AtomicFile::create_part() {
     return descriptor;
 }
 
-/// A link cannot replace a file, but a rename can: first the name of a part, then the target's.
+/// A link cannot replace a file, but a rename can: the file first gets the name of a part, then the target's.
 void AtomicFile::give_name() {
     if (part_.empty()) {
         const fs::path part = new_part(folder());
@@ -106,9 +106,11 @@ void AtomicFile::overwrite(long offset, const void* data, std::size_t byte_count
 }
 
 void AtomicFile::commit() {
-    if (std::fflush(file_) != 0) fail("write"); // buffered bytes meet a full disk only now
+    if (std::fflush(file_) != 0)
+        fail("write"); // a full disk may be noticed only now, when buffered bytes are written
     if (!is_in_place_) {
-        // A name that reached the disk before the bytes did would be that of an empty file.
+        // If the name reached the disk before the bytes, a power cut could leave an empty file with that
+        // name.
         if (!system::sync(file_)) fail("write");
         give_name();
     }

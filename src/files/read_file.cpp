@@ -66,8 +66,8 @@ std::vector<std::byte> read_file(const fs::path& path, const CheckBeginning& che
 
 namespace {
 
-/// The file as a mapping, or nothing where it has to be read. A pipe is not opened, which would take its
-/// bytes away.
+/// Maps the file; returns nothing if it has to be read. A pipe is not opened, since that would consume its
+/// bytes.
 std::span<const std::byte> map_bytes(const fs::path& path) {
     std::error_code ignored;
     if (!fs::is_regular_file(path, ignored)) return {};

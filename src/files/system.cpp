@@ -78,7 +78,7 @@ HANDLE handle_of(int descriptor) {
     return reinterpret_cast<HANDLE>(_get_osfhandle(descriptor));
 }
 
-/// @param mode  of the C library: _O_RDONLY or _O_WRONLY
+/// @param mode  flags of the C library: _O_RDONLY or _O_WRONLY
 int open(const fs::path& path, DWORD access, DWORD disposition, int mode) {
     const HANDLE handle =
         CreateFileW(path.c_str(), access, kShared, nullptr, disposition, FILE_FLAG_BACKUP_SEMANTICS, nullptr);
@@ -96,7 +96,7 @@ int open(const fs::path& path, DWORD access, DWORD disposition, int mode) {
 
 int open_to_read(const fs::path& path) {
     std::error_code ignored;
-    if (fs::is_directory(path, ignored)) { // which would open and could not be read
+    if (fs::is_directory(path, ignored)) { // a directory could be opened but not read
         errno = EISDIR;
         return -1;
     }
@@ -133,11 +133,11 @@ bool sync(std::FILE* file) {
     return _commit(_fileno(file)) == 0 || errno == EINVAL;
 }
 
-void sync_names(const fs::path&) {} // replace() has waited
+void sync_names(const fs::path&) {} // replace() has already waited
 
 namespace {
 
-/// FILE_RENAME_INFO with flags, which MinGW's headers of version 10 lack.
+/// FILE_RENAME_INFO with flags, which is missing from MinGW's headers of version 10.
 struct RenameInfo {
     DWORD flags;
     HANDLE root;
@@ -145,7 +145,8 @@ struct RenameInfo {
     WCHAR name[1];
 };
 
-/// Replaces also a file that somebody reads, as on POSIX. From Windows 10 on, and not on all file systems.
+/// Replaces the target even if somebody reads it, as on POSIX. Works from Windows 10 on, but not on all file
+/// systems.
 bool replace_open_file(const fs::path& target, const fs::path& file) {
     constexpr auto kFileRenameInfoEx = static_cast<FILE_INFO_BY_HANDLE_CLASS>(22);
     constexpr DWORD kReplaceIfExists = 1, kPosixSemantics = 2;
@@ -184,7 +185,7 @@ std::optional<std::uint64_t> size_of(int descriptor) {
 }
 
 std::optional<std::size_t> read_at(int descriptor, std::uint64_t offset, std::span<std::byte> bytes) {
-    constexpr std::size_t kMost = std::size_t{1} << 30; // of one call
+    constexpr std::size_t kMost = std::size_t{1} << 30; // the limit of one call
     std::size_t count = 0;
     while (count < bytes.size()) {
         const std::uint64_t at = offset + count;
@@ -204,7 +205,7 @@ std::optional<std::size_t> read_at(int descriptor, std::uint64_t offset, std::sp
     return count;
 }
 
-/// Windows replaces no file that is mapped.
+/// Maps nothing, since Windows does not replace mapped files.
 std::span<const std::byte> map(int, std::size_t) {
     return {};
 }
@@ -212,7 +213,7 @@ std::span<const std::byte> map(int, std::size_t) {
 void unmap(std::span<const std::byte>) noexcept {}
 
 bool make_private_folder(const fs::path& path) {
-    // A folder in the user's own has the rights of that one.
+    // A folder within the user's own folder inherits its access rights.
     return CreateDirectoryW(path.c_str(), nullptr) != 0 || GetLastError() == ERROR_ALREADY_EXISTS ||
            fail_with_errno();
 }
@@ -222,7 +223,7 @@ int hold_folder(const fs::path& path) {
 }
 
 void remove_unless_held(const fs::path& path) noexcept {
-    // Whoever holds it has it open, and then nobody can have it alone.
+    // A process that holds it has it open, so that it cannot be opened exclusively.
     const DWORD kind = FILE_FLAG_BACKUP_SEMANTICS | FILE_FLAG_OPEN_REPARSE_POINT;
     const HANDLE handle =
         CreateFileW(path.c_str(), GENERIC_READ | DELETE, 0, nullptr, OPEN_EXISTING, kind, nullptr);
@@ -240,7 +241,7 @@ std::vector<std::string> begin_program(int argc, char** argv) {
     if (GetConsoleMode(terminal, &mode) != 0)
         SetConsoleMode(terminal, mode | ENABLE_VIRTUAL_TERMINAL_PROCESSING);
 
-    // main() has them in the system's old code page, which cannot hold every name.
+    // The arguments of main() are in the system's old code page, which cannot represent every name.
     int count = 0;
     wchar_t** const wide = CommandLineToArgvW(GetCommandLineW(), &count);
     if (wide == nullptr) return {argv + std::min(argc, 1), argv + argc};
@@ -249,7 +250,7 @@ std::vector<std::string> begin_program(int argc, char** argv) {
         const int size = WideCharToMultiByte(CP_UTF8, 0, wide[i], -1, nullptr, 0, nullptr, nullptr);
         std::string argument(static_cast<std::size_t>(std::max(size, 1)), '\0');
         WideCharToMultiByte(CP_UTF8, 0, wide[i], -1, argument.data(), size, nullptr, nullptr);
-        argument.pop_back(); // the zero
+        argument.pop_back(); // the terminating zero
         arguments.push_back(std::move(argument));
     }
     LocalFree(wide);
@@ -257,7 +258,7 @@ std::vector<std::string> begin_program(int argc, char** argv) {
 }
 
 fs::path program_path() {
-    std::wstring name(std::size_t{1} << 15, L'\0'); // the longest path
+    std::wstring name(std::size_t{1} << 15, L'\0'); // the maximum length of a path
     name.resize(GetModuleFileNameW(nullptr, name.data(), static_cast<DWORD>(name.size())));
     return name;
 }
@@ -281,7 +282,7 @@ class ThreadEnd {
     DWORD index_;
 };
 
-/// Never destroyed: threads of the system run it until the process ends.
+/// Never destroyed, since threads of the system may run it until the process ends.
 std::function<void()>& clean_up_function() {
     static auto& instance = *new std::function<void()>;
     return instance;
@@ -313,7 +314,7 @@ class ThreadEnd {
     explicit ThreadEnd(void (*end)(void*)) : exists_(pthread_key_create(&key_, end) == 0) {}
     ThreadEnd(const ThreadEnd&) = delete;
     ThreadEnd& operator=(const ThreadEnd&) = delete;
-    ~ThreadEnd() { // where a library is unloaded, threads go on
+    ~ThreadEnd() { // after a library is unloaded, threads may continue
         if (exists_) pthread_key_delete(key_);
     }
 
@@ -324,12 +325,12 @@ class ThreadEnd {
     bool exists_;
 };
 
-/// Where Linux shows the file of an open descriptor.
+/// The path at which Linux provides the file of an open descriptor.
 std::string path_of_descriptor(int descriptor) {
     return "/proc/self/fd/" + std::to_string(descriptor);
 }
 
-/// Until all copies of the descriptor are closed.
+/// Holds the lock until all copies of the descriptor are closed.
 bool lock(int descriptor) {
     return flock(descriptor, LOCK_EX | LOCK_NB) == 0;
 }
@@ -356,7 +357,7 @@ int create_unnamed([[maybe_unused]] const fs::path& folder) {
     if (descriptor < 0) return descriptor;
     lock(descriptor);
     if (access(path_of_descriptor(descriptor).c_str(), F_OK) == 0) return descriptor;
-    ::close(descriptor); // it could not be given a name
+    ::close(descriptor); // the file could not be given a name
 #endif
     return -1;
 }
@@ -457,7 +458,7 @@ namespace {
 
 [[noreturn]] void clean_up_and_end(const std::function<void()>& clean_up, int signal,
                                    const sigset_t& signals) {
-    pthread_sigmask(SIG_UNBLOCK, &signals, nullptr); // here a second one ends the program
+    pthread_sigmask(SIG_UNBLOCK, &signals, nullptr); // from here on, a second signal ends the program
     clean_up();
     raise(signal);
     _exit(128 + signal);
@@ -475,7 +476,7 @@ void when_interrupted(std::function<void()> clean_up) {
     sigemptyset(&signals);
     for (const int signal : {SIGINT, SIGTERM, SIGHUP})
         if (!is_ignored(signal)) sigaddset(&signals, signal);
-    pthread_sigmask(SIG_BLOCK, &signals, nullptr); // all threads that are started later have the same mask
+    pthread_sigmask(SIG_BLOCK, &signals, nullptr); // threads that are started later inherit the mask
     std::thread([clean_up = std::move(clean_up), signals] {
         int signal = 0;
         if (sigwait(&signals, &signal) == 0) clean_up_and_end(clean_up, signal, signals);

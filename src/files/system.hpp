@@ -14,78 +14,81 @@
 
 ECHINUS_EXPORT_BEGIN
 
-/// All that is asked of the operating system beyond the standard library, so that one source knows POSIX and
-/// Windows. A function that gives a descriptor gives -1 where it fails, one that says whether it succeeded
-/// gives false, and errno has the reason.
+/// Everything that Echinus requires of the operating system beyond the standard library, so that only one
+/// source file distinguishes POSIX and Windows. If a function fails, it returns -1 instead of a descriptor or
+/// false instead of true, and errno has the reason.
 namespace echinus::system {
 
-// ---- Files. Others may read, rename and replace a file that is open here. ----
+// ---- Files. While they are open here, other processes may read, rename and replace them. ----
 
-/// Any file, to read; a pipe is waited for.
+/// Opens any file for reading; waits for the writer of a pipe.
 int open_to_read(const std::filesystem::path& path);
-/// A device or a pipe, to write to.
+/// Opens a device or a pipe for writing.
 int open_to_write(const std::filesystem::path& path);
-/// A new file, to write to, which is held.
+/// Creates a new file for writing and holds it.
 int create(const std::filesystem::path& path);
-/// A file without a name, to write to, which is held; -1 where the system or the file system has none.
+/// Creates a file without a name for writing and holds it; returns -1 if the system or the file system does
+/// not support that.
 int create_unnamed(const std::filesystem::path& folder);
-/// Gives it a name that no file has.
+/// Gives the file a name that no file has yet.
 bool give_name(std::FILE* file, const std::filesystem::path& path);
 void close(int descriptor) noexcept;
 
-/// The stream takes the descriptor along.
+/// The stream takes ownership of the descriptor.
 std::FILE* stream_of(int descriptor, const char* mode);
-/// Waits until the disk has what was written; true also where the file system cannot say when that is.
+/// Waits until the written bytes are on the disk; also returns true if the file system cannot tell.
 bool sync(std::FILE* file);
-/// So that a new name in the folder outlasts a power cut. Nothing fails here: there are folders that may be
-/// written to and not be opened.
+/// Makes a new name in the folder survive a power cut. Does not report failures, since some folders may be
+/// written to but not opened.
 void sync_names(const std::filesystem::path& folder);
-/// Gives a file another's name, in one step: all see the old file or the new one.
+/// Renames a file to the name of another and replaces that in one step: everyone sees either the old file or
+/// the new one.
 bool replace(const std::filesystem::path& target, const std::filesystem::path& file);
 
-/// Of a regular file; nothing for others. Files in /proc say 0.
+/// The size of a regular file; nothing for other files. The size of files in /proc is 0.
 std::optional<std::uint64_t> size_of(int descriptor);
-/// Fills `bytes` with those that begin at the offset.
-/// @returns how many there are, fewer only where the file ends; nothing where it fails
+/// Fills `bytes` with the bytes of the file from the offset on.
+/// @returns  the number of bytes read, fewer than requested only at the end of the file; nothing on failure
 std::optional<std::size_t> read_at(int descriptor, std::uint64_t offset, std::span<std::byte> bytes);
 
-/// The bytes of an open file in memory; none where they have to be read.
+/// Maps the bytes of an open file into memory; returns nothing if they have to be read.
 std::span<const std::byte> map(int descriptor, std::size_t byte_count);
 void unmap(std::span<const std::byte> bytes) noexcept;
 
-// ---- Held files and folders: open ones that others can tell from one whose owner has ended ----
+// ---- Held files and folders: open ones, which others can distinguish from those whose owner has ended ----
 
-/// Makes a folder that others cannot read, if it is not there yet.
+/// Creates a folder that others cannot read, unless it exists already.
 bool make_private_folder(const std::filesystem::path& path);
-/// Holds a folder until all copies of the descriptor are closed; -1 also where another process holds it, or
-/// the file system has no locks.
+/// Holds a folder until all copies of the descriptor are closed. Also returns -1 if another process holds it
+/// or the file system has no locks.
 int hold_folder(const std::filesystem::path& path);
-/// Removes the file or folder unless somebody holds it. A file that cannot be removed stays.
+/// Removes the file or folder unless a process holds it. A file that cannot be removed stays.
 void remove_unless_held(const std::filesystem::path& path) noexcept;
 
 // ---- Threads ----
 
-/// Gives a value to `end` when the calling thread ends, unless it is the one that ends the program. The last
-/// value of a thread counts. (A thread_local object of GCC for Windows is gone before its destructor runs.)
-/// @pre the value is not null, and `end` is always the same
+/// Passes a value to `end` when the calling thread ends, unless it is the thread that ends the program. Only
+/// the last value of a thread counts. (With GCC for Windows, a thread_local object is destroyed before its
+/// destructor runs.)
+/// @pre the value is not null, and `end` is the same in all calls
 /// @throws std::bad_alloc
 void give_at_thread_end(void (*end)(void*), void* value);
 
 // ---- The program ----
 
-/// The arguments behind the program's name, in UTF-8. Also prepares standard streams for bytes, and the
-/// terminal for UTF-8 and for escape sequences.
+/// The arguments after the program's name, in UTF-8. Also prepares the standard streams for binary data, and
+/// the terminal for UTF-8 and escape sequences.
 std::vector<std::string> begin_program(int argc, char** argv);
-/// The file of the running program, or an empty path.
+/// The path of the running program, or an empty path if it is unknown.
 std::filesystem::path program_path();
-/// Does standard error go to a terminal?
+/// Is standard error connected to a terminal?
 bool has_terminal();
 
-/// From now on whatever asks the program to end (SIGINT, SIGTERM and SIGHUP; on Windows Ctrl+C, Ctrl+Break
-/// and the end of the terminal or the session) first runs `clean_up`, in a thread of its own, and then ends
-/// the program as it would have done. A second time it ends at once. Signals that are ignored, as under
-/// nohup, stay so.
-/// @pre the program has no other threads yet; called once
+/// After this call, a request to end the program (SIGINT, SIGTERM or SIGHUP; on Windows Ctrl+C, Ctrl+Break
+/// and the end of the terminal or the session) first runs `clean_up` in a separate thread, and then ends the
+/// program as it would have done otherwise. A second request ends the program at once. Signals that are
+/// ignored, as under nohup, remain ignored.
+/// @pre the program has no other threads yet, and this function was not called before
 void when_interrupted(std::function<void()> clean_up);
 /// Never returns.
 [[noreturn]] void wait_for_end();

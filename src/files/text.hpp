@@ -13,8 +13,8 @@
 
 namespace echinus {
 
-/// The path that UTF-8 names. Windows would read bytes in its old code page, which it does with those that
-/// are not UTF-8.
+/// The path that a UTF-8 string names. Windows would interpret the bytes in its old code page; here it does
+/// so only if they are not valid UTF-8.
 inline std::filesystem::path utf8_path(std::string_view text) {
 #ifdef _WIN32
     try {
@@ -25,14 +25,14 @@ inline std::filesystem::path utf8_path(std::string_view text) {
     return text;
 }
 
-/// The text of a file, behind the byte order mark of UTF-8 if there is one.
-/// @param fail  is called with a clause, and must throw, when the mark says that the text is UTF-16 or UTF-32
+/// The text of a file, without the byte order mark of UTF-8 if it begins with one.
+/// @param fail  is called with a clause, and must throw, if the mark indicates UTF-16 or UTF-32
 template <typename Fail>
 std::string_view utf8_text(std::string_view bytes, Fail&& fail) {
     using namespace std::string_view_literals;
     constexpr std::string_view kMarkOfUtf8 = "\xef\xbb\xbf";
     constexpr std::array<std::pair<std::string_view, const char*>, 4> kOtherMarks{{
-        {"\xff\xfe\0\0"sv, "UTF-32"}, // before that of UTF-16, which it begins with
+        {"\xff\xfe\0\0"sv, "UTF-32"}, // before UTF-16, whose mark is the beginning of this one
         {"\0\0\xfe\xff"sv, "UTF-32"},
         {"\xff\xfe"sv, "UTF-16"},
         {"\xfe\xff"sv, "UTF-16"},
@@ -43,21 +43,23 @@ std::string_view utf8_text(std::string_view bytes, Fail&& fail) {
     return bytes.starts_with(kMarkOfUtf8) ? bytes.substr(kMarkOfUtf8.size()) : bytes;
 }
 
-/// A number in a sentence: six significant digits, as a stream writes it. Streams would bring their locales
-/// along, which make the WebAssembly file a fifth larger.
+/// A number for use in a message: six significant digits, as a stream writes it. A stream would require
+/// locales, which would enlarge the WebAssembly file by a fifth.
 inline std::string number_text(double number) {
     char digits[32];
     std::snprintf(digits, sizeof digits, "%g", number);
     return digits;
 }
 
-/// Of an index that is out of range. @param name  of what is counted, such as "collider"
+/// A message for an index that is out of range. @param name  the singular of what is counted, such as
+/// "collider"
 inline std::string no_such_text(const std::string& name, const std::string& index, std::size_t count) {
     return "there is no " + name + " " + index + "; there " +
            (count == 1 ? "is 1" : "are " + std::to_string(count));
 }
 
-/// Levenshtein's distance: insertions, deletions and replacements that make one word the other.
+/// Levenshtein's distance: the least number of insertions, deletions and replacements that turn one word into
+/// the other.
 inline std::size_t edit_distance(std::string_view a, std::string_view b) {
     std::vector<std::size_t> row(b.size() + 1);
     std::iota(row.begin(), row.end(), std::size_t{0});
