@@ -13,7 +13,7 @@ namespace echinus {
 
 namespace {
 
-/// Cubes along an axis: a layer below the box, one above, and the corners that end the last.
+/// The number of cube corners along an axis: enough for a layer of cubes below the box and one above it.
 double cube_count(double low, double high, double size) {
     return std::ceil((high - low) / size) + 3;
 }
@@ -24,7 +24,7 @@ BodyLattice::BodyLattice(const Vec3d& low, const Vec3d& high, double size)
     : size_(size), counts_{truncated_to<std::uint64_t>(cube_count(low.x, high.x, size)),
                            truncated_to<std::uint64_t>(cube_count(low.y, high.y, size)),
                            truncated_to<std::uint64_t>(cube_count(low.z, high.z, size))} {
-    // The box in the middle of the corners, of which each axis has as many as cubes.
+    // Centres the box among the cube corners; counts_ is their number along each axis.
     const auto half_extent = [&](std::uint64_t count) { return static_cast<double>(count - 1) * size / 2; };
     origin_ =
         (low + high) * 0.5 - Vec3d{half_extent(counts_[0]), half_extent(counts_[1]), half_extent(counts_[2])};
@@ -43,7 +43,7 @@ bool is_long(std::uint8_t edge) {
     return edge < kLongEdgeCount;
 }
 
-/// The cut edges that belong to the vertices of a slab; their fractions are not yet known.
+/// The cut edges that belong to the vertices of a slab; their fractions are not yet determined.
 std::vector<CutPoint> cut_edges(const BodyLattice& lattice, const LatticeSides& sides, std::size_t slab) {
     std::vector<CutPoint> cuts;
     const BodyLattice::Vertex begin = slab * lattice.slab_size(), end = begin + lattice.slab_size();
@@ -81,7 +81,8 @@ LatticeSides find_sides(const ExactMapView& map, const BodyLattice& lattice, uns
 double find_entry(const ExactMapView& map, const Vec3d& outside, const Vec3d& inside) {
     const SweepHit hit = sweep(map, Vec3f(outside), Vec3f(inside));
     if (hit.found() && hit.entering) return std::clamp(double{hit.fraction}, 0.0, 1.0);
-    // The surface is open, and the winding number changes without a face: halve to below float's precision.
+    // The surface is open, and the winding number changes at a place without a face: bisect to below float's
+    // precision.
     double low = 0, high = 1;
     for (int i = 0; i < 24; ++i) {
         const double middle = (low + high) / 2;
@@ -198,15 +199,15 @@ class SortedTetrahedron {
         return {cuts_.between(places_[inside], places_[outside]) | StencilCorner::kCutPoint};
     }
 
-    /// Two corners inside and one outside leave a quadrilateral of their triangle. Does its diagonal start at
-    /// the first corner, or at the second?
+    /// Two inside corners and one outside corner of a triangle leave a quadrilateral of it. Does its diagonal
+    /// start at the first inside corner rather than the second?
     bool diagonal_starts_at_first(std::size_t first, std::size_t second, std::size_t outside) const {
         const Place &a = places_[first], &b = places_[second], &out = places_[outside];
-        // Where one of the cut edges is long, the diagonal ends at its cut point.
+        // If one of the cut edges is long, the diagonal ends at its cut point.
         if (is_short(a, b)) return !is_short(b, out);
-        // Else the parity rule: it ends at the cut point than which its other end is greater in an even
+        // Otherwise parity decides: the start of the diagonal must exceed its end, a cut point, in an even
         // number of coordinates. So the diagonals of two neighbouring triangles at a long edge start at
-        // either end.
+        // different ends of it.
         const Place middle = b + out; // doubled
         const int greater_count = static_cast<int>(2 * a.x > middle.x) +
                                   static_cast<int>(2 * a.y > middle.y) + static_cast<int>(2 * a.z > middle.z);
@@ -219,7 +220,8 @@ class SortedTetrahedron {
     }
     static bool is_short(const Place& a, const Place& b) { return a.x % 2 != b.x % 2; }
 
-    /// By exchanges of two; an odd number is made even by one of equals, so that the corners stay positive.
+    /// Sorts by exchanges of two corners. If their number is odd, two corners of the same side are exchanged,
+    /// too, so that the orientation stays positive.
     void sort() {
         bool is_odd = false;
         const auto exchange = [&](std::size_t i, std::size_t j) {
@@ -231,7 +233,7 @@ class SortedTetrahedron {
             for (std::size_t i = 0; i + 1 < end; ++i)
                 if (ranks_[i] > ranks_[i + 1]) exchange(i, i + 1);
         if (!is_odd) return;
-        for (std::size_t i = 0; i < 3; ++i) // four corners, three sides
+        for (std::size_t i = 0; i < 3; ++i) // four corners have three different sides
             if (ranks_[i] == ranks_[i + 1]) return exchange(i, i + 1);
     }
 
@@ -242,13 +244,13 @@ class SortedTetrahedron {
     std::array<int, 3> counts_{};
 };
 
-/// Three tetrahedra of a prism with the triangles `top` and `bottom`, which turn the same way,
-/// counter-clockwise seen from the bottom.
-/// @param from_top  [i] does the diagonal of the side between corners i and i + 1 start at top[i], or at
-///                  top[i + 1]? Not all equal
+/// Adds three tetrahedra that fill a prism with the triangles `top` and `bottom`, both counter-clockwise seen
+/// from the bottom.
+/// @param from_top  [i] whether the diagonal of the side between corners i and i + 1 starts at top[i] rather
+///                  than top[i + 1]; not all equal
 void add_prism(const std::array<StencilCorner, 3>& top, const std::array<StencilCorner, 3>& bottom,
                const std::array<bool, 3>& from_top, std::vector<StencilTetrahedron>& result) {
-    // The corner of the top from which two diagonals start.
+    // Find the corner of the top at which two diagonals start.
     std::size_t a = 0;
     while (!from_top[a] || from_top[(a + 2) % 3]) ++a;
     const std::size_t b = (a + 1) % 3, c = (a + 2) % 3;
@@ -262,7 +264,7 @@ void add_prism(const std::array<StencilCorner, 3>& top, const std::array<Stencil
     }
 }
 
-/// One corner inside: the cut points take the places of the corners outside.
+/// One corner inside: the cut points replace the outside corners.
 void add_tip(const SortedTetrahedron& t, std::vector<StencilTetrahedron>& result) {
     StencilTetrahedron tip{t.corner(0), t.corner(1), t.corner(2), t.corner(3)};
     for (std::size_t i = 4 - static_cast<std::size_t>(t.outside_count()); i < 4; ++i) tip[i] = t.cut(0, i);
@@ -271,7 +273,8 @@ void add_tip(const SortedTetrahedron& t, std::vector<StencilTetrahedron>& result
 
 /// Two corners inside, one on the surface, one outside: a pyramid over a quadrilateral.
 void add_pyramid(const SortedTetrahedron& t, std::vector<StencilTetrahedron>& result) {
-    // Positive with the apex third; exchanging the last two of the sorted corners twice keeps it so.
+    // Positive with the apex as third corner: exchanging the last two of the sorted corners twice preserves
+    // the orientation.
     const StencilCorner a = t.corner(0), b = t.corner(1), apex = t.corner(2);
     const StencilCorner cut_a = t.cut(0, 3), cut_b = t.cut(1, 3);
     if (t.diagonal_starts_at_first(0, 1, 3)) {
@@ -291,10 +294,10 @@ void add_truncated(const SortedTetrahedron& t, std::vector<StencilTetrahedron>& 
               result);
 }
 
-/// Two corners inside, two outside: a prism that lies on the edge between the former.
+/// Two corners inside, two outside: a prism lying on the edge between the inside corners.
 void add_wedge(const SortedTetrahedron& t, std::vector<StencilTetrahedron>& result) {
     const bool first = t.diagonal_starts_at_first(0, 1, 2), last = !t.diagonal_starts_at_first(0, 1, 3);
-    // The quadrilateral in the middle belongs to no neighbour.
+    // The quadrilateral in the middle is not shared with a neighbour.
     add_prism({t.corner(0), t.cut(0, 2), t.cut(0, 3)}, {t.corner(1), t.cut(1, 2), t.cut(1, 3)},
               {first, !first, last}, result);
 }

@@ -13,20 +13,21 @@
 namespace echinus {
 
 /// The body-centred cubic lattice: the corners of cubes (level 0) and their centres (level 1). Neighbours
-/// along an axis are joined by a *long* edge, a corner and a centre of one cube by a *short* one. Two long
-/// edges that cross at right angles, half an edge apart, and the four short edges between them make a
+/// along an axis are joined by a *long* edge, and a corner and the centre of a cube by a *short* one. Two
+/// long edges that are perpendicular, half an edge apart, and the four short edges between them form a
 /// tetrahedron.
 class BodyLattice {
   public:
     using Vertex = std::uint64_t;
 
-    /// A vertex in half edges from the lattice's first one; all three are even, or all are odd.
+    /// The position of a vertex in half edges from the first vertex of the lattice; all three are even, or
+    /// all odd.
     using Place = Vec3<std::int64_t>;
 
-    /// A lattice around a box: the vertices of its hull are farther from the box than half an edge.
+    /// Makes a lattice around a box: the vertices of its hull are more than half an edge outside the box.
     BodyLattice(const Vec3d& low, const Vec3d& high, double size);
 
-    /// How many vertices such a lattice would have, which may be too many to number.
+    /// The number of vertices that such a lattice would have, which may be too large for numbering them.
     static double vertex_count_around(const Vec3d& low, const Vec3d& high, double size);
 
     double size() const { return size_; }
@@ -60,13 +61,13 @@ class BodyLattice {
   private:
     Vec3d origin_;
     double size_;
-    /// Of cubes along each axis. Twice their product is at most TetrahedralizeOptions::kMaxLatticeVertices,
-    /// as whoever makes a lattice sees to.
+    /// The number of cube corners along each axis. Twice their product is at most
+    /// TetrahedralizeOptions::kMaxLatticeVertices; the creator of a lattice must ensure this.
     std::array<std::uint64_t, 3> counts_;
 };
 
-/// Eleven edges belong to each vertex, so that every edge belongs to one: the long ones to the next vertex
-/// along each axis, and from a vertex of level 0 the short ones to its eight neighbours.
+/// The edges that belong to a vertex. Every edge belongs to exactly one: long edges go to the next vertex
+/// along each axis, and short edges from a vertex of level 0 to its eight neighbours.
 inline constexpr int kEdgeCount = 11;
 inline constexpr int kLongEdgeCount = 3;
 inline constexpr std::array<BodyLattice::Place, kEdgeCount> kEdges{{{2, 0, 0},
@@ -81,12 +82,13 @@ inline constexpr std::array<BodyLattice::Place, kEdgeCount> kEdges{{{2, 0, 0},
                                                                     {-1, 1, 1},
                                                                     {1, 1, 1}}};
 
-/// Calls visit(the four places of a tetrahedron, positive) for each that belongs to a vertex of level 0:
-/// those around its three long edges. Their first two places, and their last two, are the ends of a long
-/// edge.
+/// Calls visit(the four positions of a tetrahedron, positively oriented) for each tetrahedron that belongs to
+/// a vertex of level 0: those around its three long edges. The first two positions are the ends of a long
+/// edge, and so are the last two.
 template <typename Visit>
 void for_each_tetrahedron_at(const BodyLattice::Place& vertex, Visit&& visit) {
-    // The four centres around a long edge, counter-clockwise seen against its axis, in half edges.
+    // The four centres around a long edge, counter-clockwise seen against the direction of its axis, in half
+    // edges.
     constexpr std::array<std::array<int, 2>, 4> kRing{{{-1, -1}, {1, -1}, {1, 1}, {-1, 1}}};
     const std::array<std::int64_t, 3> from{vertex.x, vertex.y, vertex.z};
     const auto place = [](const std::array<std::int64_t, 3>& p) {
@@ -112,35 +114,35 @@ enum class LatticeSide : std::uint8_t { Outside, Inside, OnSurface };
 /// The side of each vertex of a lattice, in one byte each.
 using LatticeSides = std::vector<LatticeSide>;
 
-/// Asks the map for the side of every vertex.
-/// @param progress  called with the share that is done
+/// Determines the side of every vertex by queries of the map.
+/// @param progress  called with the completed share
 LatticeSides find_sides(const ExactMapView& map, const BodyLattice& lattice, unsigned thread_count,
                         const std::function<void(double)>& progress);
 
 /// Where a lattice edge crosses the surface.
 struct CutPoint {
-    BodyLattice::Vertex vertex; ///< to which the edge belongs
+    BodyLattice::Vertex vertex; ///< the vertex to which the edge belongs
     std::uint8_t edge;          ///< its number in kEdges
-    float fraction;             ///< of the edge, from `vertex` on; 0 to 1
+    float fraction;             ///< the fraction of the edge, from `vertex` on; 0 to 1
 
     std::uint64_t key() const { return vertex * kEdgeCount + edge; }
 };
 
-/// The share of the way from a place outside to one inside at which the surface is crossed, 0 to 1; of
-/// several crossings, the first.
+/// The fraction of the segment from an outside point to an inside point at which the surface is crossed, 0 to
+/// 1; of several crossings, the first.
 using FindEntry = std::function<double(const Vec3d& outside, const Vec3d& inside)>;
 
-/// Asks the map.
+/// Finds the entry by a query of the map.
 double find_entry(const ExactMapView& map, const Vec3d& outside, const Vec3d& inside);
 
 /// The cut points of a lattice, one on each edge between an inside and an outside vertex.
 class CutPoints {
   public:
-    /// Labelle and Shewchuk 2007, table 1: with these shares of long and short edges, within which a vertex
-    /// is moved onto the surface, the least dihedral angle is largest.
+    /// Table 1 of Labelle and Shewchuk 2007: with these shares of long and short edges, within which a vertex
+    /// is moved onto the surface, the least dihedral angle is as large as possible.
     static constexpr double kLongShare = 0.24999, kShortShare = 0.41189;
 
-    /// @param find  called by several threads at once
+    /// @param find  called by several threads concurrently
     CutPoints(const BodyLattice& lattice, const LatticeSides& sides, const FindEntry& find,
               unsigned thread_count);
 
@@ -152,12 +154,13 @@ class CutPoints {
     /// The cut point on the edge between two neighbours. @pre there is one
     std::size_t between(const BodyLattice::Place& a, const BodyLattice::Place& b) const;
 
-    /// Moves vertices that lie too near to a cut point of theirs onto it, where they are OnSurface and lose
-    /// their other cut points (Labelle and Shewchuk 2007, section 3.2): nearer than a share of the edge that
-    /// the tetrahedra's angles depend on. Of several, the nearest.
+    /// Moves vertices that are too close to one of their cut points onto it. They become OnSurface and lose
+    /// their other cut points (Labelle and Shewchuk 2007, section 3.2). Too close means nearer than the
+    /// shares of edges above, on which the tetrahedra's angles depend. Of several cut points, the nearest is
+    /// chosen.
     void warp(LatticeSides& sides);
 
-    /// Where a vertex lies, warped or not.
+    /// The position of a vertex, warped or not.
     Vec3d position_of(const BodyLattice::Place& place) const;
 
   private:
@@ -182,9 +185,9 @@ struct StencilCorner {
 };
 using StencilTetrahedron = std::array<StencilCorner, 4>;
 
-/// Adds the part of a lattice tetrahedron that the surface leaves inside, by the stencils of Labelle and
-/// Shewchuk 2007, figure 3: one to three tetrahedra, positive, where it has a corner inside; none otherwise.
-/// Neighbours cut the quadrilateral on their common face along the same diagonal.
+/// Adds the part of a lattice tetrahedron that is inside the surface, by the stencils of Labelle and Shewchuk
+/// 2007, figure 3: one to three tetrahedra, positively oriented, if a corner is inside, otherwise none.
+/// Neighbours divide the quadrilateral on their common face along the same diagonal.
 /// @param corners  as for_each_tetrahedron_at() gives them
 void add_stencil(const BodyLattice& lattice, const LatticeSides& sides, const CutPoints& cuts,
                  const std::array<BodyLattice::Place, 4>& corners, std::vector<StencilTetrahedron>& result);

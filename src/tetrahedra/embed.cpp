@@ -21,11 +21,11 @@ namespace {
 /// The tetrahedra of a body in a tree of boxes.
 class TetrahedronTree {
   public:
-    /// @param mesh  valid, with a tetrahedron; must outlive the tree
+    /// @param mesh  valid, with at least one tetrahedron; must outlive the tree
     explicit TetrahedronTree(const TetrahedralMesh& mesh);
 
-    /// The tetrahedron that holds the point, or else the nearest; of several, the one with the smallest
-    /// number.
+    /// The tetrahedron that contains the point or, if there is none, the nearest one; of several, the one
+    /// with the smallest number.
     std::uint32_t nearest(const Vec3d& point) const;
 
   private:
@@ -75,7 +75,8 @@ std::uint32_t TetrahedronTree::nearest(const Vec3d& point) const {
 
 void TetrahedronTree::search(std::uint32_t number, const Vec3d& point, Nearest& nearest) const {
     const BoxTree::Node& node = tree_.node(number);
-    if (node.box.distance(point) > nearest.distance) return; // equally near ones may have smaller numbers
+    if (node.box.distance(point) > nearest.distance)
+        return; // an equally near node may contain a tetrahedron with a smaller number
     if (node.is_leaf()) {
         for (std::uint32_t i = node.begin; i < node.end; ++i) {
             const std::uint32_t tetrahedron = tree_.leaf(i).item;
@@ -91,7 +92,8 @@ void TetrahedronTree::search(std::uint32_t number, const Vec3d& point, Nearest& 
     search(right_first ? node.left : node.right(), point, nearest);
 }
 
-/// The point's weights: the volumes of the tetrahedra that it makes with the faces, as shares.
+/// The point's weights: the volumes of the tetrahedra that it forms with the faces, as fractions of their
+/// sum.
 std::array<double, 4> weights_of(const TetrahedralMesh& mesh, const Tetrahedron& tetrahedron,
                                  const Vec3d& point) {
     std::array<double, 4> volumes{};
@@ -137,7 +139,8 @@ void carry(const Embedding& embedding, StridedSpan<const Vec3f> positions, Strid
     for_each_piece(embedding.size(), thread_count, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
             const Tetrahedron& corners = embedding[i].vertices;
-            // From the first corner, so that a translation is not scaled by a sum that rounding keeps from 1.
+            // Summed relative to the first corner, so that a translation is not scaled if rounding makes the
+            // sum of weights differ from 1.
             const Vec3d first(positions[corners[0]]);
             Vec3d point = first;
             for (std::size_t k = 1; k < 4; ++k)

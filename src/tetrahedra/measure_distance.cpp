@@ -24,7 +24,7 @@ double mean_edge(const TriangleMesh& mesh) {
     return sum / static_cast<double>(3 * mesh.faces.size());
 }
 
-/// Gathers samples, and measures them by the batch.
+/// Collects samples and measures their distances in batches.
 class Sampler {
   public:
     Sampler(const ExactMapView& target, unsigned thread_count)
@@ -61,8 +61,8 @@ class Sampler {
     std::size_t count_ = 0;
 };
 
-/// Points of a face at equal steps along two of its edges, no farther apart than the spacing, up to 64 a
-/// side.
+/// Samples a face at points with equal steps along two of its edges. The steps are no longer than the
+/// spacing, but there are at most 64 per side.
 void sample_face(const std::array<Vec3d, 3>& p, double spacing, Sampler& sampler) {
     const double longest = std::max({length(p[1] - p[0]), length(p[2] - p[1]), length(p[0] - p[2])});
     const int steps = truncated_to<int>(std::clamp(std::ceil(longest / spacing), 1.0, 64.0));

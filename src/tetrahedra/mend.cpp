@@ -20,7 +20,7 @@ std::size_t turn_negative(TetrahedralMesh& mesh) {
     std::size_t count = 0;
     for (Tetrahedron& corners : mesh.tetrahedra) {
         const auto corner = [&](std::size_t i) -> const Vec3f& { return mesh.vertices[corners[i]]; };
-        // 1 where the first three turn clockwise seen from the last.
+        // orientation() is 1 if the first three turn clockwise seen from the last.
         if (orientation(corner(0), corner(1), corner(2), corner(3)) <= 0) continue;
         std::swap(corners[2], corners[3]);
         ++count;
@@ -54,10 +54,10 @@ TetrahedralMesh local_body(std::span<const Vec3d> positions, std::vector<Tetrahe
 
 namespace {
 
-/// Two vertices of an edge, ascending, or a vertex twice.
+/// The two vertices of an edge, ascending, or one vertex twice.
 using Pinch = std::pair<std::uint32_t, std::uint32_t>;
 
-/// The edges with more than two faces, and elsewhere the vertices whose faces form more than one fan.
+/// The edges with more than two faces, and the other vertices whose faces form more than one fan.
 std::vector<Pinch> find_pinches(const TriangleMesh& surface) {
     std::vector<Pinch> pinches;
     std::vector<std::uint8_t> on_pinched_edge(surface.vertices.size());
@@ -96,8 +96,8 @@ bool has(const Tetrahedron& corners, std::uint32_t vertex) {
     return std::find(corners.begin(), corners.end(), vertex) != corners.end();
 }
 
-/// Of the tetrahedra around a place, those outside the largest part that hangs together by faces at the
-/// place; all of them where they are one part.
+/// Of the tetrahedra around a vertex or an edge, those outside the largest part that is connected by faces at
+/// that vertex or edge; all of them if there is only one part.
 std::vector<std::uint32_t> to_remove(const TetrahedralMesh& mesh, const Pinch& place,
                                      const std::vector<std::uint32_t>& around) {
     UnionFind parts(around.size());
@@ -113,7 +113,8 @@ std::vector<std::uint32_t> to_remove(const TetrahedralMesh& mesh, const Pinch& p
             const auto [other, is_new] = seen.emplace(face, i);
             if (!is_new) parts.join(other->second, i);
         }
-    std::vector<double> volumes(around.size()); // of the part whose smallest member it is
+    std::vector<double> volumes(
+        around.size()); // the volume of each part, at the index of its smallest member
     for (std::uint32_t i = 0; i < around.size(); ++i)
         volumes[parts.find(i)] += tetrahedron_volume(mesh, around[i]);
     const auto largest =
@@ -124,11 +125,11 @@ std::vector<std::uint32_t> to_remove(const TetrahedralMesh& mesh, const Pinch& p
     return others.empty() ? around : others;
 }
 
-/// One round; the places are treated as they were at its beginning.
+/// Performs one round; every pinch is treated in the state at the beginning of the round.
 std::size_t remove_at(TetrahedralMesh& mesh, const std::vector<Pinch>& pinches) {
     std::vector<std::uint8_t> at_pinch(mesh.vertices.size()), removed(mesh.tetrahedra.size());
     for (const Pinch& place : pinches) at_pinch[place.first] = 1;
-    std::map<std::uint32_t, std::vector<std::uint32_t>> around; // by vertex
+    std::map<std::uint32_t, std::vector<std::uint32_t>> around; // the tetrahedra around each vertex
     for (std::uint32_t number = 0; number < mesh.tetrahedra.size(); ++number)
         for (const std::uint32_t vertex : mesh.tetrahedra[number])
             if (at_pinch[vertex] != 0) around[vertex].push_back(number);

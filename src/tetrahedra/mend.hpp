@@ -19,9 +19,10 @@ std::size_t turn_negative(TetrahedralMesh& mesh);
 /// @pre indices are in range
 std::size_t drop_unused_vertices(TetrahedralMesh& mesh);
 
-/// Makes the boundary manifold by removing tetrahedra: where parts of the body meet in no more than an edge
-/// or a vertex, the largest stays and the others lose the tetrahedra there; where two hollows meet in a
-/// vertex, its tetrahedra go. Repeats this until there is no such place. Vertices stay, used or not.
+/// Makes the boundary manifold by removing tetrahedra. If parts of the body are connected only by an edge or
+/// a vertex, the largest part stays and the others lose the tetrahedra there; if two hollows meet at a
+/// vertex, all tetrahedra at that vertex are removed. This is repeated until there is no such edge or vertex.
+/// Vertices are kept, used or not.
 /// @returns how many tetrahedra were removed
 std::size_t remove_pinches(TetrahedralMesh& mesh);
 

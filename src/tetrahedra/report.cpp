@@ -33,7 +33,7 @@ Corners corners_of(const TetrahedralMesh& mesh, const Tetrahedron& tetrahedron) 
     return corners;
 }
 
-/// The angle between the faces at the edge from a to b, at which c and d are the other corners.
+/// The dihedral angle at the edge from a to b; c and d are the other two corners.
 double angle_at_edge(const Vec3d& a, const Vec3d& b, const Vec3d& c, const Vec3d& d) {
     const Vec3d to_c = cross(b - a, c - a), to_d = cross(b - a, d - a);
     return std::atan2(length(cross(to_c, to_d)), dot(to_c, to_d));
@@ -88,7 +88,7 @@ void require_valid_tetrahedra(const TetrahedralMesh& mesh) {
                 throw Error(ErrorCode::InvalidMesh, "vertex " + std::to_string(vertex) + " of tetrahedron " +
                                                         std::to_string(number) + " is not finite");
         const auto corner = [&](int i) { return mesh.vertices[corners[i]]; };
-        // Clockwise seen from the last corner is 1.
+        // orientation() is 1 if the first three turn clockwise seen from the last.
         const int side = orientation(corner(0), corner(1), corner(2), corner(3));
         if (side == 0)
             throw Error(ErrorCode::InvalidMesh,
@@ -97,7 +97,7 @@ void require_valid_tetrahedra(const TetrahedralMesh& mesh) {
             throw Error(ErrorCode::InvalidMesh, "tetrahedron " + std::to_string(number) +
                                                     " has a negative volume; exchange two of its corners");
     }
-    sorted_face_uses(mesh); // throws where two overlap at a face
+    sorted_face_uses(mesh); // throws if two tetrahedra overlap at a face
 }
 
 } // namespace echinus

@@ -23,8 +23,8 @@ void require_possible(const Vec3d& size, const std::array<std::uint32_t, 3>& seg
                                                        std::to_string(kMost));
 }
 
-/// The corners of a cuboid, bit 0 of their number for x, 1 for y, 2 for z, make five tetrahedra: one in the
-/// middle, and one at each corner that it does not have.
+/// The corners of a cuboid, with bits 0, 1 and 2 of their numbers for x, y and z, form five tetrahedra: one
+/// in the middle, and one at each corner that it does not contain.
 constexpr std::array<std::array<std::uint8_t, 4>, 5> kCuboid{
     {{0, 3, 6, 5}, {1, 0, 5, 3}, {2, 0, 3, 6}, {4, 0, 6, 5}, {7, 3, 5, 6}}};
 
@@ -34,7 +34,7 @@ TetrahedralMesh make_solid_box(const Vec3d& size, const std::array<std::uint32_t
     require_possible(size, segments);
     const std::array<std::uint32_t, 3> n = segments;
     const std::uint32_t nx = n[0], ny = n[1],
-                        nz = n[2]; // captured by Clang, which structured bindings are not
+                        nz = n[2]; // copies that lambdas can capture in Clang, unlike structured bindings
     TetrahedralMesh box;
     for (std::uint32_t k = 0; k <= nz; ++k)
         for (std::uint32_t j = 0; j <= ny; ++j)
@@ -45,7 +45,7 @@ TetrahedralMesh make_solid_box(const Vec3d& size, const std::array<std::uint32_t
     const auto index = [&](std::uint32_t i, std::uint32_t j, std::uint32_t k) {
         return (k * (ny + 1) + j) * (nx + 1) + i;
     };
-    // Mirrored from cuboid to cuboid, so that neighbours cut their common side along the same diagonal.
+    // Mirrored from cuboid to cuboid, so that neighbours divide their common side along the same diagonal.
     for (std::uint32_t k = 0; k < nz; ++k)
         for (std::uint32_t j = 0; j < ny; ++j)
             for (std::uint32_t i = 0; i < nx; ++i) {

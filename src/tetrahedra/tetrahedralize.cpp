@@ -23,16 +23,16 @@ namespace echinus {
 
 namespace {
 
-/// A set of numbers below a limit, which also tells how many of its members are smaller than one: one and a
-/// half bits for each number of the range.
+/// A set of numbers below a limit, which also counts its members below a given one. It takes one and a half
+/// bits for each number below the limit.
 class RankedSet {
   public:
     explicit RankedSet(std::size_t limit) : words_(limit / 64 + 1), ranks_(words_.size()) {}
 
     void insert(std::uint64_t number) { words_[number / 64] |= bit(number); }
 
-    /// To be called after the last insert().
-    /// @returns how many members there are. @pre fewer than 2^32
+    /// Must be called after the last insert().
+    /// @returns  the number of members. @pre fewer than 2^32
     std::uint32_t count_ranks() {
         std::uint32_t count = 0;
         for (std::size_t i = 0; i < words_.size(); ++i) {
@@ -59,10 +59,10 @@ class RankedSet {
     static std::uint64_t bit(std::uint64_t number) { return std::uint64_t{1} << number % 64; }
 
     std::vector<std::uint64_t> words_;
-    std::vector<std::uint32_t> ranks_; ///< of the first number of each word
+    std::vector<std::uint32_t> ranks_; ///< the rank of the first number of each word
 };
 
-/// Shares of the time, roughly.
+/// Approximate shares of the total time at which the steps are complete.
 constexpr double kSidesShare = 0.5, kCutsShare = 0.7, kStencilsShare = 0.8;
 
 using Box = AlignedBox<double>;
@@ -141,7 +141,7 @@ std::vector<StencilTetrahedron> cut_lattice(const BodyLattice& lattice, const La
     return all;
 }
 
-/// Numbers the vertices: those of the lattice in its order, then the cut points.
+/// Numbers the vertices: first those of the lattice in its order, then the cut points.
 TetrahedralMesh number_vertices(const BodyLattice& lattice, const CutPoints& cuts,
                                 const std::vector<StencilTetrahedron>& tetrahedra) {
     RankedSet vertices(lattice.vertex_count()), points(cuts.size());
@@ -167,7 +167,7 @@ TetrahedralMesh number_vertices(const BodyLattice& lattice, const CutPoints& cut
     return mesh;
 }
 
-/// One try; a body without tetrahedra where no vertex of the lattice is inside.
+/// One attempt; the result has no tetrahedra if no vertex of the lattice is inside.
 Tetrahedralization stuff(const ExactMapView& map, const Box& box, double size,
                          const TetrahedralizeOptions& options) {
     const auto report = [&](double share) {
@@ -192,20 +192,21 @@ Tetrahedralization stuff(const ExactMapView& map, const Box& box, double size,
     return result;
 }
 
-/// Tries sizes until the count is met: the count grows with the inverse cube of the size, and a little faster
-/// while the lattice misses parts of the model.
+/// Tries sizes until the count is close enough: the count is inversely proportional to the cube of the size,
+/// and grows slightly faster while the lattice misses parts of the model.
 Tetrahedralization stuff_count(const ExactMapView& map, const Box& box,
                                const TetrahedralizeOptions& options) {
     constexpr int kMostTries = 16;
     constexpr double kTolerance = 0.05, kMostVerticesTried = 1 << 22;
     const auto wanted = static_cast<double>(options.count);
-    // A thin model needs sizes at which its box holds far more elements than it does itself.
+    // A thin model needs sizes at which its box would hold far more elements than the model itself.
     const double most_vertices = std::max(kMostVerticesTried, 256 * wanted);
     const auto miss = [&](const Tetrahedralization& body) {
         if (body.mesh.tetrahedra.empty()) return std::numeric_limits<double>::infinity();
         return std::abs(static_cast<double>(body.mesh.tetrahedra.size()) / wanted - 1);
     };
-    // As if the model filled its box, where twelve tetrahedra fill a cube: too large at first, not too small.
+    // Starts as if the model filled its box, where twelve tetrahedra fill a cube; so the first size is too
+    // large rather than too small.
     double size = std::max(std::cbrt(12 * volume_of(box) / wanted), box.largest_coordinate() / 2048);
     Tetrahedralization best;
     for (int i = 0; i < kMostTries; ++i) {
@@ -219,7 +220,8 @@ Tetrahedralization stuff_count(const ExactMapView& map, const Box& box,
     return best;
 }
 
-/// Neighbours have near numbers then, and the body's parts their own stretches of memory.
+/// Numbers vertices along an axis, so that neighbours have similar numbers and parts of the body are
+/// contiguous in memory.
 void number_along(double Vec3d::*axis, TetrahedralMesh& mesh) {
     std::vector<std::pair<double, std::uint32_t>> order;
     for (const Vec3f& vertex : mesh.vertices)

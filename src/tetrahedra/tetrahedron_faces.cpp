@@ -82,7 +82,7 @@ TriangleMesh boundary(const TetrahedralMesh& mesh) {
     const std::vector<FaceUse> uses = sorted_face_uses(mesh);
     for (std::size_t i = 0; i < uses.size(); ++i)
         if (i + 1 < uses.size() && uses[i + 1].vertices == uses[i].vertices)
-            ++i; // the face of two tetrahedra
+            ++i; // the face belongs to two tetrahedra
         else
             outer.push_back(uses[i]);
     std::sort(outer.begin(), outer.end(), [](const FaceUse& a, const FaceUse& b) {

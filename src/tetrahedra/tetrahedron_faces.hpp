@@ -19,20 +19,20 @@ Triangle face_opposite(const Tetrahedron& tetrahedron, int corner);
 struct FaceUse {
     Triangle vertices; ///< ascending
     std::uint32_t tetrahedron;
-    std::uint8_t corner; ///< opposite
-    bool is_even;        ///< face_opposite() is an even permutation of `vertices`
+    std::uint8_t corner; ///< the corner opposite the face
+    bool is_even;        ///< whether face_opposite() is an even permutation of `vertices`
 };
 
 /// All uses of all faces, sorted by face and then by tetrahedron.
-/// @throws Error InvalidMesh when an index is out of range, or two tetrahedra lie on the same side of a face;
-/// so each face has at most two uses
+/// @throws Error InvalidMesh if an index is out of range or two tetrahedra are on the same side of a face; so
+/// each face has at most two uses
 std::vector<FaceUse> sorted_face_uses(const TetrahedralMesh& mesh);
 
-/// @throws Error InvalidMesh when there are more tetrahedra than std::uint32_t counts, an index is out of
+/// @throws Error InvalidMesh if there are more tetrahedra than std::uint32_t can count, an index is out of
 /// range, or a tetrahedron has two equal corners
 void require_indices(const TetrahedralMesh& mesh);
 
-/// Of a positive tetrahedron positive; in the cube of the mesh's unit.
+/// The signed volume of a tetrahedron, positive if it is positively oriented; in the cube of the mesh's unit.
 inline double tetrahedron_volume(const TetrahedralMesh& mesh, std::size_t number) {
     const Tetrahedron& corners = mesh.tetrahedra[number];
     const Vec3d a(mesh.vertices[corners[0]]);
