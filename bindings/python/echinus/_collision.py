@@ -141,7 +141,8 @@ class SurfaceCollision:
     self_collision
         Faces do not intersect each other either.
     untangle
-        Separate an initial state that intersects, or is inside the model, instead of rejecting it.
+        Separate an initial state in which surfaces intersect or particles are inside the model, instead of
+        rejecting it.
     threads
         Threads that share a step; 0: all cores. The results are bit-identical for any number (0 to 1024).
 

@@ -444,8 +444,8 @@ class DistanceMap(_Map[_core.DistanceMap]):
     correction
         The correction for vertices of the mesh between the samples.
     entries
-        The format of a stored distance; ``unorm16`` takes half the bytes, with an error of at most 7.6e-6 R, on
-        octahedral and ellipsoidal grids 1.4e-5 R.
+        The format of a stored distance; ``unorm16`` takes half the bytes, with an error of at most 7.6e-6 R, or
+        1.4e-5 R on octahedral and ellipsoidal grids.
     pole_axis
         Spherical and ellipsoidal grid: the axis of the mesh on which the poles of the grid lie, where samples
         crowd.

@@ -112,7 +112,7 @@ class Simulation:
         The default frame limit of :meth:`run`.
     time_step
         Seconds per frame. The paper's solver needs smaller steps: there, halving the step doubles the computing
-        time and leaves a quarter of the stretch (1e-9 to 1e9 s).
+        time and reduces the stretch to a quarter (1e-9 to 1e9 s).
     solver
         ``newton``: a continuous material in SI units; ``jakobsen``: the paper's solver, with distance constraints
         and collision of particles only.
@@ -120,8 +120,8 @@ class Simulation:
         ``jakobsen`` only: relaxations per frame, each of all distance constraints and then of all contacts; more
         relaxations take longer and leave less stretch (1 to 1e6).
     newton_step_count
-        ``newton`` only: the largest number of steps of Newton's method per frame, and twice as many while there is
-        no contact; fewer are taken if it converges (1 to 1000).
+        ``newton`` only: the largest number of steps of Newton's method per frame, or twice that number while there
+        is no contact; fewer are taken if it converges (1 to 1000).
     rest_frame_count
         The number of consecutive frames for which all particles must be slow and near one position (1 to 1e9).
     rest_distance
@@ -146,8 +146,8 @@ class Simulation:
     friction
         Coulomb's coefficient between cloth and model; 0 is no friction (0 to 1e9).
     bound
-        The largest distance of a particle from the initial middle of all particles; a particle farther away ends
-        the simulation as diverged. 0: 10 000 times the initial extent (0 to 1e30).
+        The largest distance of a particle from the initial middle of all particles; if a particle is farther away,
+        the simulation ends as diverged. 0: 10 000 times the initial extent (0 to 1e30).
     keep_free
         ``jakobsen`` only: rescue particles that would pass through an exact map.
     allow_open_colliders
@@ -158,10 +158,10 @@ class Simulation:
         ``surfaces``: edges and faces do, too, so none of them intersects a model at the end of a frame, within
         limits; ``surfaces_and_self``: in addition, faces do not intersect each other.
     untangle
-        ``newton`` only: separate an initial state that intersects, or is inside the model, before the first frame
-        instead of rejecting it; needs the collision of surfaces.
+        ``newton`` only: separate, before the first frame, an initial state in which surfaces intersect or particles
+        are inside the model, instead of rejecting it; needs the collision of surfaces.
     density
-        ``newton`` only, like the next four: mass of the cloth per area (1e-6 to 1e6 kg/m^2).
+        ``newton`` only, like the next four options: mass of the cloth per area (1e-6 to 1e6 kg/m^2).
     stretch_stiffness
         Force per width that resists stretching of warp and weft (1e-6 to 1e9 N/m).
     shear_stiffness
@@ -174,16 +174,16 @@ class Simulation:
         ``newton`` only: tolerance of Newton's method, relative to the mean edge length. It has converged if the
         decrease of the energy corresponds to a root-mean-square displacement of at most this length (0 to 1).
     air_drag
-        ``newton`` only: resistance of still air, the rate at which a free velocity decays; 0 is a vacuum (0 to 1e6
-        1/s).
+        ``newton`` only: resistance of still air, the rate at which the velocity of a free particle decays; 0 is a
+        vacuum (0 to 1e6 1/s).
     wind
         Velocity of the air; needs ``wind_rate`` (-1e9 to 1e9 length/s).
     wind_rate
         The rate at which particles take on the air's velocity relative to a face, along the face's normal; higher
         for lighter cloth. 0: no air. Without ``wind`` the air is at rest and slows motion (0 to 1e9 1/s).
     pressure
-        ``newton`` only: pressure inside the closed pieces of cloth in excess of the surrounding pressure; constant,
-        like that of a pump (0 to 1e9 N/m^2).
+        ``newton`` only: pressure inside closed pieces of cloth in excess of the surrounding pressure; it is
+        constant, as if a pump maintained it (0 to 1e9 N/m^2).
     threads
         Threads that compute a frame; 0: all cores. The results are bit-identical for any number (0 to 1024).
 

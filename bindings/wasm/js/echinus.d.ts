@@ -26,7 +26,7 @@ export type ErrorCode =
     | 'Diverged'
     /** Out of memory. The module still works: delete something, or request less. */
     | 'OutOfMemory'
-    /** An argument of a wrong kind or size. */
+    /** An argument of the wrong kind or size. */
     | 'InvalidArgument'
     /** The object was deleted. */
     | 'Deleted'
@@ -43,9 +43,9 @@ export function missingFeatures(): string[];
  * Loads the module. Each call makes an instance with its own memory; a compiled module loads again quickly and can be
  * posted to workers.
  * @param source  the address of echinus.wasm, as for fetch(): a relative one is relative to the page or the worker; in
- *                Node also the path of a file. Or its bytes, or the compiled module. By default it is next to this
- *                module
- * @throws Unsupported, or Unreadable when it is not there
+ *                Node also the path of a file. It may also be the bytes of the file, or the compiled module. By default
+ *                the file is looked up next to this module
+ * @throws Unsupported, or Unreadable when the file is not there
  */
 export function load(source?: URL | string | Response | Promise<Response> | BufferSource | WebAssembly.Module): Promise<Echinus>;
 
@@ -65,7 +65,10 @@ export class Echinus {
 
     /** All memory that the instance has allocated from the host. It never shrinks; at most 4 GiB. */
     readonly memoryByteCount: number;
-    /** 'wasm', or 'scalar' for the reference: the same answers, slower. Applies to the whole instance. */
+    /**
+     * 'wasm', or 'scalar' for the reference implementation, which gives the same answers more slowly. Applies to the
+     * whole instance.
+     */
     instructionSet: 'wasm' | 'scalar';
 
     // Memory for batches.
@@ -81,24 +84,24 @@ export class Echinus {
      */
     makeMesh(vertices: ArrayLike<number>, faces: ArrayLike<number>): Mesh;
     /**
-     * Polygons are triangulated; each of k corners becomes k - 2 faces, in order.
+     * Polygons are triangulated; a polygon of k corners becomes k - 2 faces, in order.
      * @param corners       vertices, polygon after polygon
      * @param cornerCounts  [polygon_count]
      */
     makeMeshFromPolygons(vertices: ArrayLike<number>, corners: ArrayLike<number>, cornerCounts: ArrayLike<number>): Mesh;
     /**
      * Reads an OBJ, PLY, STL or OFF file, text or binary, depending on the extension of its name; vertices at equal
-     * positions are welded. For glTF, GLB and 3DS use another reader, makeMesh() and weld().
-     * @throws WrongFormat, Damaged or InvalidMesh; the sentence begins with the name, and names the line or byte
+     * positions are welded. For glTF, GLB and 3DS use a different reader, makeMesh() and weld().
+     * @throws WrongFormat, Damaged or InvalidMesh; the message begins with the name, and names the line or byte
      */
     readMesh(bytes: ArrayBuffer | ArrayBufferView, name: string): Mesh;
-    /** About the z axis. @throws InvalidOptions */
+    /** Makes a torus about the z axis. @throws InvalidOptions */
     makeTorus(majorRadius: number, minorRadius: number, majorSegments: number, minorSegments: number): Mesh;
     makeSphere(radius: number, meridianCount: number, parallelCount: number): Mesh;
     makeBox(size: Vec3, segments?: number): Mesh;
     /**
-     * Finds which meshes intersect each other or themselves, and those of which one has a vertex inside
-     * another (echinus/intersections.hpp). All must lie in one frame. Mesh.intersections() has the curves.
+     * Finds the meshes that intersect each other or themselves, and the pairs of which one mesh has a vertex inside the
+     * other (echinus/intersections.hpp). All meshes must lie in one frame. Mesh.intersections() has the curves.
      */
     check(meshes: readonly Mesh[]): CheckedMeshes[];
 
@@ -118,7 +121,8 @@ export class Echinus {
 
     /**
      * Collision for particles that another solver moves.
-     * @throws InvalidOptions as for the options of a scene, and with `surfaces` for an initial state that intersects
+     * @throws InvalidOptions as for the options of a scene, and, with `surfaces`, for an initial state in which
+     * surfaces intersect
      */
     makeCollision(options: CollisionOptions): Collision;
 
@@ -135,7 +139,7 @@ export class Echinus {
  * Memory of the module that both sides read and write.
  *
  * A view lasts until memory grows, which any call into the module may cause; then the old array is empty, and the
- * getter gives a new one. So keep the buffer and get `.view` at each use: that costs a comparison.
+ * getter returns a new one. So keep the buffer and get `.view` at each use, which costs a comparison.
  */
 export class PointBuffer extends Deletable {
     readonly length: number;
@@ -161,11 +165,11 @@ export class ContactBuffer extends Deletable {
     static readonly FEATURE: 34;
 
     readonly length: number;
-    /** [9 length] Of contact i: point at 9i, normal at 9i + 3, depth at 9i + 6. */
+    /** [9 length] The point of contact i is at 9i, its normal at 9i + 3, its depth at 9i + 6. */
     readonly floats: Float32Array;
-    /** [9 length] Of contact i: face at 9i + 7, -1 where it is not known. */
+    /** [9 length] The face of contact i is at 9i + 7; -1 if it is not known. */
     readonly ints: Int32Array;
-    /** [36 length] Of contact i: inside at 36i + 32, certain at 36i + 33, feature at 36i + 34. */
+    /** [36 length] `inside` of contact i is at 36i + 32, `certain` at 36i + 33, `feature` at 36i + 34. */
     readonly bytes: Uint8Array;
     /** A copy of one contact. */
     at(index: number): Contact;
@@ -181,7 +185,7 @@ export interface Contact {
     inside: boolean;
     certain: boolean;
     feature: 'unknown' | 'face' | 'edge' | 'vertex';
-    /** Inside, or outside within the margin. */
+    /** True if the point is inside, or outside within the margin. */
     found: boolean;
 }
 
@@ -202,7 +206,7 @@ export class Mesh extends Deletable {
     faults(): MeshFaults;
     /** Joins vertices at equal positions and drops unused ones; faces keep their order. */
     weld(): Mesh;
-    /** A repaired copy. @param repairs  by default all */
+    /** Makes a repaired copy. @param repairs  by default all */
     repair(repairs?: readonly Repair[]): { mesh: Mesh; report: RepairReport };
     /**
      * The intersecting faces, by exact tests (echinus/intersections.hpp): pairs of a face of this mesh and
@@ -213,7 +217,10 @@ export class Mesh extends Deletable {
     selfIntersectingPairs(): Uint32Array;
     /** The intersecting faces of this mesh and the other, or of this mesh alone, and the curves along which they cross. */
     intersections(other?: Mesh): Intersections;
-    /** A reference by brute force over all faces: 1 inside a closed mesh, 0 outside. */
+    /**
+     * The winding number of the surface around a point, by brute force over all faces, as a reference: 1 inside a
+     * closed mesh, 0 outside.
+     */
     windingNumber(point: Vec3): number;
     unsignedDistance(point: Vec3): number;
 }
@@ -241,7 +248,7 @@ export interface CheckedMeshes {
     pairCount: number;
     curveCount: number;
     curveLength: number;
-    /** null where the other mesh is not closed or no exact map can hold it, and for a mesh and itself. */
+    /** null if the other mesh is not closed or no exact map of it is possible, and for a mesh and itself. */
     aInB: Penetration | null;
     bInA: Penetration | null;
 }
@@ -272,7 +279,7 @@ export interface MeshReport {
     /** Positive if faces point outwards. */
     signedVolume: number;
     boundingSphere: { centre: [number, number, number]; radius: number };
-    /** The spacing of floats, if all coordinates are floats and these are too coarse there; otherwise 0. */
+    /** The spacing of floats at the mesh, if all coordinates are floats and this spacing is too coarse; otherwise 0. */
     roundingStep: number;
 }
 export interface MeshFaults {
@@ -300,7 +307,7 @@ export interface RepairReport {
     facesTurned: number;
     /** Filled holes of zero width. */
     seamsFilled: number;
-    /** The indices of all dropped faces, ascending; faces that closed a hole have indices after those of the mesh. */
+    /** The indices of all dropped faces, ascending; faces that fill a hole have indices after those of the mesh. */
     droppedFaces: Uint32Array;
 }
 
@@ -347,8 +354,8 @@ export interface DistanceMapOptions {
     /** The correction for vertices of the mesh between the samples. Default: `"signed"`. */
     correction?: 'none' | 'paper' | 'signed';
     /**
-     * The format of a stored distance; `unorm16` takes half the bytes, with an error of at most 7.6e-6 R, on octahedral
-     * and ellipsoidal grids 1.4e-5 R. Default: `"float32"`.
+     * The format of a stored distance; `unorm16` takes half the bytes, with an error of at most 7.6e-6 R, or 1.4e-5 R
+     * on octahedral and ellipsoidal grids. Default: `"float32"`.
      */
     entries?: 'float32' | 'unorm16';
     /**
@@ -366,7 +373,10 @@ export interface DistanceMapOptions {
 export type MapOptions = ExactMapOptions | DistanceMapOptions;
 export type AnyMap = ExactMap | DistanceMap;
 
-/** Points are in the frame of the mesh, relative to its origin. A point with NaN or infinity is outside and has no contact; an exact map is not certain of one with NaN. */
+/**
+ * Points are in the frame of the mesh, relative to its origin. A point with NaN or infinity is outside and has no
+ * contact; for a point with NaN an exact map is not certain of this.
+ */
 declare abstract class MapOfEitherKind extends Deletable {
     /** The size of all data that a query reads. */
     readonly byteCount: number;
@@ -392,7 +402,9 @@ declare abstract class MapOfEitherKind extends Deletable {
     save(): Uint8Array;
 }
 
-/** A segment of a ray from the centre, in distances from it; the last ends at the bounding sphere. */
+/**
+ * A segment of a ray from the centre, given by distances from the centre; the last segment ends at the bounding sphere.
+ */
 export interface RayInterval {
     from: number;
     to: number;
@@ -403,25 +415,38 @@ export interface RayInterval {
 export class ExactMap extends MapOfEitherKind {
     readonly kind: 'exact';
     readonly description: ExactMapDescription;
-    /** contains(), and whether the answer is certain: `certain` is false where the mesh is open and the winding number is near one half. */
+    /**
+     * contains(), and whether the answer is certain: `certain` is false if the mesh is open and the winding number is
+     * near one half.
+     */
     classify(point: Vec3): { inside: boolean; certain: boolean };
     /** The first crossing of the line segment between two points with the surface. */
     sweep(from: Vec3, to: Vec3): SweepHit;
     /** The map's data along a ray from its centre. @param direction  of any length but 0 */
     ray(direction: Vec3): ExactRay;
-    /** The mesh on the map's lattice; for each face the length of the longest band list that contains it. Delete the mesh. */
+    /**
+     * The mesh on the map's lattice, and for each face the length of the longest band list that contains it. Delete the
+     * mesh after use.
+     */
     surface(): { mesh: Mesh; longestLists: Uint32Array };
-    /** For drawing: for each cell the counts of its bands and of the faces in their lists, and unit vectors to its three corners (9 numbers). */
+    /**
+     * Data for drawing: for each cell the number of its bands, the number of faces in their lists, and unit vectors to
+     * its three corners (9 numbers).
+     */
     cells(): { bandCounts: Uint32Array; faceCounts: Uint32Array; corners: Float32Array };
 }
 
 export class DistanceMap extends MapOfEitherKind {
     readonly kind: 'distance';
     readonly description: DistanceMapDescription;
-    /** The number of samples around a point that enter the interpolation; 0 where queries do not interpolate. */
+    /**
+     * The number of samples around a point that are used in the interpolation; 0 if queries do not interpolate there.
+     */
     usableSampleCount(point: Vec3): number;
     ray(direction: Vec3): DistanceRay;
-    /** The surface of the map; for each face its layer, 0 for the nearest to the centre. Delete the mesh. */
+    /**
+     * The surface of the map, and for each face its layer, 0 for the nearest to the centre. Delete the mesh after use.
+     */
     surface(): { mesh: Mesh; layers: Uint32Array };
 }
 
@@ -439,18 +464,21 @@ export interface ExactRay {
     cell: number;
     /** Unit vectors. */
     cellCorners: [number, number, number][];
-    /** The intervals that may contain surface; windingBelow is the winding number of the gap towards the centre, null if it is not unique. */
+    /**
+     * The intervals that may contain surface; windingBelow is the winding number of the gap towards the centre, null if
+     * there is no single number.
+     */
     bands: { from: number; to: number; faceCount: number; windingBelow: number | null }[];
-    /** Distances of the surface. */
+    /** The distances at which the ray meets the surface. */
     crossings: number[];
     intervals: RayInterval[];
 }
 export interface DistanceRay {
-    /** The samples around the ray, by their index; an octahedral map's fourth is one of the other three. */
+    /** The indices of the samples around the ray; in an octahedral map the fourth is one of the other three. */
     samples: number[];
-    /** The number of entries of each. */
+    /** The number of entries of each sample. */
     sampleEntryCounts: number[];
-    /** True for those with the same number of entries as the nearest; the others are ignored. */
+    /** True for samples with the same number of entries as the nearest one; the others are ignored. */
     samplesUsed: boolean[];
     /** The interpolated entries. */
     crossings: number[];
@@ -517,9 +545,9 @@ export interface CollisionOptions {
     colliders: readonly PlacedMap[];
     /** The distance that particles keep from the models, units. */
     thickness: number;
-    /** [3 face_count] particles of each face, which `surfaces` needs. */
+    /** [3 face_count] The particles of each face; required by `surfaces`. */
     faces?: ArrayLike<number>;
-    /** Keep faces off models, not only particles (docs/surfaces.md). Needs exact maps. Default: false. */
+    /** Keep not only particles but also faces off models (docs/surfaces.md). Needs exact maps. Default: false. */
     surfaces?: boolean;
     // Options of collisions. Generated by bindings/generate_options; edit bindings/options.toml.
     /** Coulomb's coefficient; 0 is no friction (0 to 1e9). Default: 0.5. */
@@ -534,8 +562,8 @@ export interface CollisionOptions {
     /** With `surfaces`: faces do not intersect each other either. Default: true. */
     selfCollision?: boolean;
     /**
-     * With `surfaces`: separate an initial state that intersects, or is inside the model, instead of rejecting it.
-     * Default: false.
+     * With `surfaces`: separate an initial state in which surfaces intersect or particles are inside the model, instead
+     * of rejecting it. Default: false.
      */
     untangle?: boolean;
     // End of options.
@@ -554,13 +582,19 @@ export interface CollisionOptions {
 export class Collision extends Deletable {
     readonly particleCount: number;
     readonly colliderCount: number;
-    /** [3 particleCount] world units. A particle whose position is not finite, or farther than 1e12 units from 0, is not changed, and continues from its previous position. */
+    /**
+     * [3 particleCount] world units. A particle whose position is not finite, or is farther than 1e12 units from 0, is
+     * not changed, and the next step continues from its previous position.
+     */
     readonly positions: Float32Array;
-    /** [3 particleCount] units per second, of the particles in `corrected`. */
+    /** [3 particleCount] The velocities of the particles in `corrected`, units per second. */
     readonly velocities: Float32Array;
     /** The particles that the last correct() moved, ascending. */
     readonly corrected: Uint32Array;
-    /** With `surfaces`: unresolved pairs of elements, for which no free space was proven. If 0, no faces intersect. */
+    /**
+     * With `surfaces`: the number of unresolved pairs of elements, for which no free space was proven. If it is 0, no
+     * faces intersect.
+     */
     readonly unresolvedCount: number;
 
     /**
@@ -575,19 +609,19 @@ export class Collision extends Deletable {
 
 // ---- Scenes and simulations
 
-/** A mesh that is generated. */
+/** A generated mesh. */
 export type Shape = { torus: object } | { sphere: object } | { box: object };
 
 /** Keys and limits: docs/scenes.md. Angles are degrees. */
 export interface SceneDescription {
-    /** Either this or `colliders`. */
+    /** Either this or `colliders` is required. */
     model?: string | Shape;
     repair?: readonly (Repair | MakeSolid)[];
-    /** With 'small_holes'. */
+    /** Only with 'small_holes'. */
     hole_edges?: number;
-    /** With 'sheets'. */
+    /** Only with 'sheets'. */
     sheet_thickness?: number;
-    /** With 'seams'. */
+    /** Only with 'seams'. */
     weld_distance?: number;
     map?: MapOptions;
     collider?: Placement;
@@ -616,7 +650,10 @@ export interface SceneDescription {
         ignores?: readonly number[];
     };
     bodies?: readonly Body[];
-    /** Cuts: in the frame at this time these colliders and, by default, the deformable are teleported. */
+    /**
+     * Cuts: in the first frame that begins at `time` or later, these colliders and, by default, the deformable are
+     * teleported.
+     */
     teleports?: readonly {
         time: number;
         displacement?: Vec3;
@@ -625,7 +662,7 @@ export interface SceneDescription {
         deformable?: boolean;
     }[];
     material?: {
-        /** Without a cloth, these replace the cloth's own. */
+        /** Without a cloth, these two keys take the place of those of `cloth`. */
         thickness?: number;
         self_thickness?: number;
         // Options: jakobsen. Generated by bindings/generate_options; edit bindings/options.toml.
@@ -633,11 +670,11 @@ export interface SceneDescription {
         structural?: number;
         /** `jakobsen` only: stiffness between neighbours along a diagonal, against shear; 0 to 1.99. Default: 1. */
         shear?: number;
-        /** `jakobsen` only: stiffness between every second particle in a row or column, or across an edge between two faces, against bending; 0 to 1.99. Default: 0.3. */
+        /** `jakobsen` only: stiffness between a particle and the next but one in a row or column, or across an edge between two faces, against bending; 0 to 1.99. Default: 0.3. */
         bending?: number;
         // End of options.
         // Options: newton. Generated by bindings/generate_options; edit bindings/options.toml.
-        /** `newton` only, like the next four: mass of the cloth per area (1e-6 to 1e6 kg/m^2). Default: 0.2. */
+        /** `newton` only, like the next four options: mass of the cloth per area (1e-6 to 1e6 kg/m^2). Default: 0.2. */
         density?: number;
         /** Force per width that resists stretching of warp and weft (1e-6 to 1e9 N/m). Default: 1000. */
         stretch_stiffness?: number;
@@ -648,8 +685,8 @@ export interface SceneDescription {
         /** Viscosity of the cloth divided by its stiffness (0 to 1e6 s). Default: 0.01. */
         damping?: number;
         /**
-         * `newton` only: pressure inside the closed pieces of cloth in excess of the surrounding pressure; constant,
-         * like that of a pump (0 to 1e9 N/m^2). Default: 0.
+         * `newton` only: pressure inside closed pieces of cloth in excess of the surrounding pressure; it is constant,
+         * as if a pump maintained it (0 to 1e9 N/m^2). Default: 0.
          */
         pressure?: number;
         // End of options.
@@ -662,8 +699,8 @@ export interface SceneDescription {
         /** Coulomb's coefficient between cloth and model; 0 is no friction (0 to 1e9). Default: 0.5. */
         friction?: number;
         /**
-         * `newton` only: resistance of still air, the rate at which a free velocity decays; 0 is a vacuum (0 to 1e6
-         * 1/s). Default: 0.5.
+         * `newton` only: resistance of still air, the rate at which the velocity of a free particle decays; 0 is a
+         * vacuum (0 to 1e6 1/s). Default: 0.5.
          */
         air_drag?: number;
         // End of options.
@@ -677,15 +714,15 @@ export interface SceneDescription {
      */
     collision?: 'particles' | 'surfaces' | 'surfaces_and_self';
     /**
-     * `newton` only: separate an initial state that intersects, or is inside the model, before the first frame instead
-     * of rejecting it; needs the collision of surfaces. Default: false.
+     * `newton` only: separate, before the first frame, an initial state in which surfaces intersect or particles are
+     * inside the model, instead of rejecting it; needs the collision of surfaces. Default: false.
      */
     untangle?: boolean;
     // End of options.
     // Options: solver. Generated by bindings/generate_options; edit bindings/options.toml.
     /**
      * Seconds per frame. The paper's solver needs smaller steps: there, halving the step doubles the computing time and
-     * leaves a quarter of the stretch (1e-9 to 1e9 s). Default: 1/60; 1/240 with `jakobsen`.
+     * reduces the stretch to a quarter (1e-9 to 1e9 s). Default: 1/60; 1/240 with `jakobsen`.
      */
     time_step?: number;
     /**
@@ -699,7 +736,7 @@ export interface SceneDescription {
      */
     iterations?: number;
     /**
-     * `newton` only: the largest number of steps of Newton's method per frame, and twice as many while there is no
+     * `newton` only: the largest number of steps of Newton's method per frame, or twice that number while there is no
      * contact; fewer are taken if it converges (1 to 1000). Default: 4.
      */
     newton_steps?: number;
@@ -761,7 +798,7 @@ export interface Keyframe {
     rotation?: { axis: Vec3; degrees: number };
 }
 
-/** A path, without which the handle does not move, and the release time in seconds. */
+/** The path of a handle, without which it does not move, and its release time in seconds. */
 export interface Handle {
     keyframes?: readonly Keyframe[];
     release?: number;
@@ -805,7 +842,7 @@ export interface Sheet {
     // End of options.
     /** [column, row] of fixed particles. */
     pins?: readonly (readonly [number, number])[];
-    /** Particles that move with a collider, by default the first. */
+    /** Particles that move with a collider, by default with the first one. */
     attachments?: readonly (readonly [number, number])[] | readonly { collider: number; particles: readonly (readonly [number, number])[] }[];
     handles?: readonly (Handle & { particles: readonly (readonly [number, number])[] })[];
 }
@@ -843,15 +880,15 @@ export class Scene extends Deletable {
     /** The names of the files of a mesh cloth; null for a sheet or a generated shape. */
     readonly clothFile: string | null;
     readonly clothRestFile: string | null;
-    /** For a sheet; null for a mesh cloth, and with bodies. */
+    /** The number of particles of a sheet; null for a mesh cloth, and if there are bodies. */
     readonly particleCount: number | null;
     /** The generated shape, repaired by the scene's options. @throws InvalidScene for a file: read and repair() it instead */
     makeModel(): Mesh;
     /** Builds a map with the scene's options. */
     buildMap(mesh: Mesh): AnyMap;
     /**
-     * The scene's cloth, bodies and colliders, ready to step. The map may be of another kind than the scene's.
-     * @param maps     of the collider, or of each of `colliders`, in their order
+     * The scene's cloth, bodies and colliders, ready to step. The map need not be of the kind that the scene requests.
+     * @param maps     the map of the collider, or one for each of `colliders`, in their order
      * @param options  allowOpenCollider: accept the exact map of an open mesh, through whose holes particles may pass;
      *                 cloth, clothAtRest: the meshes of clothFile and clothRestFile, welded; bodies: for each body its
      *                 closed surface, which is filled with tetrahedra; null for a generated shape
@@ -896,8 +933,8 @@ export class Simulation extends Deletable {
     step(frameCount?: number): void;
     /**
      * A simulation of the same particles and colliders in their present state, with the solver, material, thickness and
-     * gravity of another scene: for options that change while the cloth falls. Profile and frame restart. Delete the
-     * old one.
+     * gravity of another scene: for options that change while the cloth falls. The frame number and the profile start
+     * again at 0. Delete the old simulation.
      * @param maps  one for each of the scene's colliders. Colliders that this simulation does not have yet are added
      *              with the poses of the scene, and colliders beyond those of the scene are removed. By default the
      *              colliders stay
@@ -918,30 +955,33 @@ export class Simulation extends Deletable {
     recordContacts(isOn?: boolean): void;
     /** The contacts that were recorded in the last frame; copies. */
     readonly contactPoints: ContactPoints;
-    /** Sets the velocities of a collider, by default the first, in units and radians per second. It keeps them until they are set again. */
+    /**
+     * Sets the velocities of a collider, by default the first, in units and radians per second. The collider keeps them
+     * until they are set again.
+     */
     setColliderVelocity(linear: Vec3, angular: Vec3, index?: number): void;
     /**
      * Deforms a collider, by default the first: during the next step the vertices of its mesh move to
      * these positions along straight lines; then they stop. The faces stay the same, and the pose is
-     * independent and may move at the same time. Faces of the cloth are kept off the moving faces as off
-     * any others, and attached particles follow the face that was nearest to them when the collider first
-     * deformed. The exact map is rebuilt, which takes about a microsecond per face.
+     * independent and may move at the same time. Faces of the cloth are kept off the moving faces as off any other
+     * faces, and attached particles follow the face that was nearest to them when the collider first deformed. The
+     * exact map is rebuilt, which takes about a microsecond per face.
      * @param vertices  [3 vertexCount] in the collider's frame, in the order of the mesh from which its
      *                  map was built; copied, unless they are a PointBuffer
-     * @throws InvalidOptions for another number of vertices, one that is not finite, a collider without an exact map,
-     * or a scene where only particles collide; InvalidMesh if no map can be built. If it throws, nothing has changed
+     * @throws InvalidOptions for a different number of vertices, a vertex that is not finite, a collider without an
+     * exact map, or a scene in which only particles collide; InvalidMesh if no map can be built. If it throws, nothing
+     * has changed
      */
     setColliderVertices(vertices: PointBuffer | Float32Array, index?: number): void;
 
     /**
-     * Sets the velocity of a particle, in units per second. To drag with the pointer, set it before each
-     * step, for the grabbed particle and its near neighbours, to (target of the pointer - present
-     * position) / (about 5 time steps): the cloth pulls at them and the collider stops them, so none of
-     * them is dragged into the model.
+     * Sets the velocity of a particle, in units per second. To drag particles with the pointer, set the velocity of the
+     * grabbed particle and its near neighbours before each step to (target of the pointer - present position) / (about
+     * 5 time steps): the cloth pulls at them and the collider stops them, so none of them is dragged into the model.
      */
     setParticleVelocity(particle: number, velocity: Vec3): void;
     /**
-     * Wind for one frame; call before each step.
+     * Sets the wind for one frame; call it before each step.
      * @param wind  velocity of the air, units per second
      * @param rate  the rate at which the cloth takes on the wind's velocity along the normals of its faces, per second:
      *              1 to 10 for cloth
@@ -956,21 +996,21 @@ export class Simulation extends Deletable {
 
 /** The contacts of a frame, of the cloth with colliders and with itself. */
 export interface ContactPoints {
-    /** [3 count] positions on the cloth, when the contact last exerted a force; world coordinates. */
+    /** [3 count] positions on the cloth when the contact last exerted a force, in world coordinates. */
     readonly positions: Float64Array;
     /** [3 count] unit normals towards the cloth or, in self-collision, its first element. */
     readonly normals: Float64Array;
     /** [count] the gap when the contact last exerted a force. */
     readonly gaps: Float64Array;
-    /** [count] the impulse in the frame, along the normal, on the cloth or its first element, N s. */
+    /** [count] the impulse of the frame along the normal, on the cloth or its first element, N s. */
     readonly normalImpulses: Float64Array;
-    /** [3 count] the impulse of friction, perpendicular to the normal, N s. */
+    /** [3 count] the impulse of friction in the frame, perpendicular to the normal, N s. */
     readonly frictionImpulses: Float64Array;
     /** [count] the index of the collider; -1 for a contact of the cloth with itself. */
     readonly colliders: Int32Array;
     /**
      * [4 count] the particles of the cloth's element, followed in self-collision by those of the second one: a vertex
-     * and the three corners of a face, or the two ends of either edge; -1 for unused entries.
+     * and the three corners of a face, or the two ends of each edge; -1 for unused entries.
      */
     readonly particles: Int32Array;
 }
@@ -985,13 +1025,19 @@ export interface SimulationProfile {
     mapQueryCount: number;
     /** Number of times that a particle was moved back to a free position at the end of a frame. */
     rescuedCount: number;
-    /** Number of times that a particle that was free before ended a frame inside an exact map or beyond its surface. */
+    /**
+     * Number of times that a particle that had once been free of an exact map ended a frame inside it or on the other
+     * side of its surface.
+     */
     lostCount: number;
-    /** Where surfaces collide: number of times that the displacement of a particle was truncated. */
+    /** If surfaces collide: number of times that the displacement of a particle was truncated. */
     truncatedCount: number;
-    /** Where surfaces collide: vertex-face and edge-edge pairs whose distance was measured. */
+    /** If surfaces collide: number of vertex-face and edge-edge pairs whose distance was measured. */
     measuredPairCount: number;
-    /** Unresolved pairs of elements, for which no free space was proven, summed over all steps. If 0, no faces intersect. */
+    /**
+     * The number of unresolved pairs of elements, for which no free space was proven, summed over all steps. If it is
+     * 0, no faces intersect.
+     */
     unresolvedCount: number;
 }
 

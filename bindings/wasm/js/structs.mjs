@@ -90,7 +90,7 @@ export const words = {
     entry: ['float32', 'unorm16'], collision: ['particles', 'surfaces', 'surfaces_and_self'], pole: ['x', 'y', 'z'],
 };
 
-/** Words for the steps of a repair that need no guess, and the options that ask for them. */
+/** Words for the repairs that require no guesswork, and the options that request them. */
 export const repairs = {
     duplicate_faces: 'dropDuplicateFaces', doubled_patches: 'dropDoubledPatches', inside_out: 'flipInsideOut',
     seams: 'closeSeams', slivers: 'dropLooseSlivers', orientation: 'orientFaces',

@@ -388,8 +388,8 @@ typedef struct echinus_exact_map_options {
     /// The origin of the rays: the centre of the bounding sphere, or a point found by a search for the fewest
     /// face tests per query
     echinus_centre_choice centre;
-    /// False: maps of open surfaces are built up to 0.2 s faster, and the same answers take up to eight times
-    /// as long, which suits maps that are used for one frame
+    /// If false, the map of an open surface is built up to 0.2 s faster, and the same answers take up to
+    /// eight times as long, which is acceptable for a map that is used for one frame only
     int32_t find_certain_gaps;
     /// 0
     uint32_t reserved;
@@ -448,8 +448,8 @@ typedef struct echinus_distance_map_options {
     uint32_t divisions;
     /// The correction for vertices of the mesh between the samples
     echinus_vertex_correction correction;
-    /// The format of a stored distance; unorm16 takes half the bytes, with an error of at most 7.6e-6 R, on
-    /// octahedral and ellipsoidal grids 1.4e-5 R
+    /// The format of a stored distance; unorm16 takes half the bytes, with an error of at most 7.6e-6 R, or
+    /// 1.4e-5 R on octahedral and ellipsoidal grids
     echinus_entry_format entry_format;
     /// Spherical and ellipsoidal grid: the axis of the mesh on which the poles of the grid lie, where samples
     /// crowd
@@ -1182,7 +1182,7 @@ typedef enum echinus_solver {
 typedef struct echinus_simulation_options {
     size_t size;
     /// Seconds per frame. The paper's solver needs smaller steps: there, halving the step doubles the
-    /// computing time and leaves a quarter of the stretch (1e-9 to 1e9 s)
+    /// computing time and reduces the stretch to a quarter (1e-9 to 1e9 s)
     double time_step;
     /// Newton: a continuous material in SI units; jakobsen: the paper's solver, with distance constraints and
     /// collision of particles only
@@ -1190,8 +1190,8 @@ typedef struct echinus_simulation_options {
     /// Jakobsen only: relaxations per frame, each of all distance constraints and then of all contacts; more
     /// relaxations take longer and leave less stretch (1 to 1e6)
     uint32_t iteration_count;
-    /// Newton only: the largest number of steps of Newton's method per frame, and twice as many while there
-    /// is no contact; fewer are taken if it converges (1 to 1000)
+    /// Newton only: the largest number of steps of Newton's method per frame, or twice that number while
+    /// there is no contact; fewer are taken if it converges (1 to 1000)
     uint32_t newton_step_count;
     /// The number of consecutive frames for which all particles must be slow and near one position (1 to 1e9)
     uint32_t rest_frame_count;
@@ -1215,8 +1215,8 @@ typedef struct echinus_simulation_options {
     double self_thickness;
     /// Coulomb's coefficient between cloth and model; 0 is no friction (0 to 1e9)
     double friction;
-    /// The largest distance of a particle from the initial middle of all particles; a particle farther away
-    /// ends the simulation as diverged. 0: 10 000 times the initial extent (0 to 1e30)
+    /// The largest distance of a particle from the initial middle of all particles; if a particle is farther
+    /// away, the simulation ends as diverged. 0: 10 000 times the initial extent (0 to 1e30)
     double bound;
     /// Jakobsen only: rescue particles that would pass through an exact map
     int32_t keep_free;
@@ -1227,14 +1227,14 @@ typedef struct echinus_simulation_options {
     /// surfaces: edges and faces do, too, so none of them intersects a model at the end of a frame, within
     /// limits; surfaces_and_self: in addition, faces do not intersect each other
     echinus_collision_mode collision;
-    /// Newton only: separate an initial state that intersects, or is inside the model, before the first frame
-    /// instead of rejecting it; needs the collision of surfaces
+    /// Newton only: separate, before the first frame, an initial state in which surfaces intersect or
+    /// particles are inside the model, instead of rejecting it; needs the collision of surfaces
     int32_t untangle;
     /// 0
     uint32_t reserved;
     /// Threads that compute a frame; 0: all cores. The results are bit-identical for any number (0 to 1024)
     uint32_t thread_count;
-    /// Newton only, like the next four: mass of the cloth per area (1e-6 to 1e6 kg/m^2)
+    /// Newton only, like the next four options: mass of the cloth per area (1e-6 to 1e6 kg/m^2)
     double density;
     /// Force per width that resists stretching of warp and weft (1e-6 to 1e9 N/m)
     double stretch_stiffness;
@@ -1247,16 +1247,16 @@ typedef struct echinus_simulation_options {
     /// Newton only: tolerance of Newton's method, relative to the mean edge length. It has converged if the
     /// decrease of the energy corresponds to a root-mean-square displacement of at most this length (0 to 1)
     double newton_tolerance;
-    /// Newton only: resistance of still air, the rate at which a free velocity decays; 0 is a vacuum (0 to
-    /// 1e6 1/s)
+    /// Newton only: resistance of still air, the rate at which the velocity of a free particle decays; 0 is a
+    /// vacuum (0 to 1e6 1/s)
     double air_drag;
     /// Velocity of the air; needs wind_rate (-1e9 to 1e9 length/s)
     double wind[3];
     /// The rate at which particles take on the air's velocity relative to a face, along the face's normal;
     /// higher for lighter cloth. 0: no air. Without wind the air is at rest and slows motion (0 to 1e9 1/s)
     double wind_rate;
-    /// Newton only: pressure inside the closed pieces of cloth in excess of the surrounding pressure;
-    /// constant, like that of a pump (0 to 1e9 N/m^2)
+    /// Newton only: pressure inside closed pieces of cloth in excess of the surrounding pressure; it is
+    /// constant, as if a pump maintained it (0 to 1e9 N/m^2)
     double pressure;
 } echinus_simulation_options;
 
@@ -1520,7 +1520,8 @@ typedef struct echinus_surface_collision_options {
     double self_thickness;
     /// Faces do not intersect each other either
     int32_t self_collision;
-    /// Separate an initial state that intersects, or is inside the model, instead of rejecting it
+    /// Separate an initial state in which surfaces intersect or particles are inside the model, instead of
+    /// rejecting it
     int32_t untangle;
     /// Threads that share a step; 0: all cores. The results are bit-identical for any number (0 to 1024)
     uint32_t thread_count;
