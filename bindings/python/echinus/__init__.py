@@ -2,11 +2,11 @@
 
 All points are in the frame and the unit of the mesh. Arrays of points have the shape ``(..., 3)``, answers
 the shape ``(...)``. A float32 array whose points have three contiguous coordinates is read in place, whatever the
-stride; other arrays are converted to float32 first. Pass the points of a map far from 0 as float64: they are made
-relative to its ``origin`` first.
+stride; other arrays are converted to float32 first. Pass the points of a map that is far from 0 as float64: they are
+made relative to its ``origin`` first.
 
 Long computations release Python's global interpreter lock. Errors of the C++ library are raised as :class:`Error`
-with its message; arrays of a wrong shape or type raise ``ValueError`` or ``TypeError``.
+with its message; arrays of the wrong shape or type raise ``ValueError`` or ``TypeError``.
 """
 
 from echinus._core import available_instruction_sets, instruction_set, use_instruction_set

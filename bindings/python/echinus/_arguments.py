@@ -1,6 +1,6 @@
 """Conversion of arguments to the types of the library.
 
-Wrong types raise a TypeError and wrong values a ValueError, whose message names the argument.
+A wrong type raises a TypeError and a wrong value a ValueError; the message names the argument.
 """
 
 from __future__ import annotations
@@ -113,7 +113,7 @@ def path_of(value: Any) -> str:
 
 
 def json_of(values: Mapping[str, Any]) -> str:
-    """Converts values to JSON; NaN, infinity and other objects are refused by errors that name their keys."""
+    """Converts values to JSON; NaN, infinity and other objects raise errors that name their keys."""
     return json.dumps(_plain("", values))
 
 

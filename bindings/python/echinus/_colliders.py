@@ -33,7 +33,7 @@ class Collider:
     linear_velocity, angular_velocity
         Units per second, and radians per second about the position.
     name
-        For error messages; if empty, "collider" and its index.
+        A name for error messages; if empty, "collider" and its index.
     """
 
     map: AnyMap
@@ -84,20 +84,20 @@ class ContactPoints(NamedTuple):
     Attributes
     ----------
     positions
-        [contact, 3] Positions on the deformable, when the contact last exerted a force; world coordinates.
+        [contact, 3] Positions on the deformable when the contact last exerted a force, in world coordinates.
     normals
         [contact, 3] Unit normals towards the deformable or, in self-collision, its first element.
     gaps
         [contact] The gap when the contact last exerted a force; positive.
     normal_impulses
-        [contact] The impulse in the frame, along the normal, on the deformable or its first element, N s.
+        [contact] The impulse of the frame along the normal, on the deformable or its first element, N s.
     friction_impulses
-        [contact, 3] The impulse of friction, perpendicular to the normal, N s.
+        [contact, 3] The impulse of friction in the frame, perpendicular to the normal, N s.
     colliders
         [contact] The index of the collider; -1 for a contact of the deformables with themselves.
     particles
         [contact, 4] The particles of the deformable's element, followed in self-collision by those of the second one: a
-        vertex and the three corners of a face, or the two ends of either edge; -1 for unused entries.
+        vertex and the three corners of a face, or the two ends of each edge; -1 for unused entries.
     """
 
     positions: NDArray[np.float64]
@@ -115,9 +115,9 @@ class Load(NamedTuple):
     Attributes
     ----------
     force
-        mass * length / s^2, with masses in the unit in which inverse masses are their inverses.
+        The force, mass * length / s^2; the unit of mass is that of the deformable's masses.
     torque
-        About the collider's position, as it moves.
+        The torque about the collider's position, which moves.
     """
 
     force: Vector
@@ -162,16 +162,16 @@ def rotation_about(axis: Sequence[float], angle_rad: float) -> Quaternion:
 class VertexCache:
     """The vertices of a model over time, in equally spaced samples.
 
-    Between two samples vertices are interpolated linearly; before the first and after the last they do not move.
+    Between two samples vertices are interpolated linearly; before the first and after the last sample they do not move.
 
     Parameters
     ----------
     samples : array_like (sample_count, vertex_count, 3)
         Finite positions in the model's own frame; copied.
     sample_seconds
-        From one sample to the next; positive.
+        The time between two samples; positive.
     start_time
-        Of the first sample, seconds.
+        The time of the first sample, seconds.
     """
 
     _cache: _core.VertexCache
@@ -197,17 +197,17 @@ class VertexCache:
 
     @property
     def start_time(self) -> float:
-        """Of the first sample, seconds."""
+        """The time of the first sample, seconds."""
         return self._cache.start_time
 
     @property
     def sample_seconds(self) -> float:
-        """From one sample to the next."""
+        """The time between two samples, seconds."""
         return self._cache.sample_seconds
 
     @property
     def end_time(self) -> float:
-        """Of the last sample, seconds."""
+        """The time of the last sample, seconds."""
         return self._cache.end_time
 
     def at(self, seconds: float) -> NDArray[np.float32]:
@@ -227,13 +227,13 @@ def read_vertex_cache(path: Path, mesh: MeshLike, *, frames_per_second: float, a
     mesh
         The model, as returned by :func:`read_mesh`.
     animation
-        Name of the animation in a glTF, GLB or 3DS file, if there are several.
+        The name of the animation in a glTF, GLB or 3DS file; needed if there are several.
 
     Raises
     ------
     Error
-        As :func:`read_mesh`; ``invalid_mesh`` if the number of vertices, or a face in a folder, differs from
-        the model's.
+        As :func:`read_mesh` does; ``invalid_mesh`` if the number of vertices, or a face in a folder, differs from the
+        model's.
     """
     rate = number("frames_per_second", frames_per_second)
     name = of_kind("animation", animation, str)

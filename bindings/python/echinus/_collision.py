@@ -84,19 +84,19 @@ class ParticleCollision:
     ) -> NDArray[np.uint32]:
         """Corrects the particles after a step of the solver, in place, and moves the colliders.
 
-        A particle whose position is not finite is not changed and collides with nothing. For a particle that
-        does not begin where the last step ended, collision starts afresh.
+        A particle whose position is not finite is not changed and collides with nothing. For a particle whose previous
+        position is not that at the end of the last step, collision starts afresh.
 
         Parameters
         ----------
         previous_positions
-            (n, 3) At the start of the step.
+            (n, 3) The positions at the start of the step.
         positions
             (n, 3) The solver's positions, corrected in place, so contiguous float32.
         velocities
             (n, 3) Corrected, too, in units per second.
         inverse_masses
-            (n,) 0 for pinned particles, which nothing pushes.
+            (n,) 1 / mass, in any unit; 0 for pinned particles, which no collider pushes.
         seconds
             The duration of the step.
 
@@ -107,14 +107,14 @@ class ParticleCollision:
         Raises
         ------
         Error
-            ``invalid_options`` for arrays of different sizes, negative masses and a duration that is not positive.
+            ``invalid_options`` for arrays of different sizes, a negative mass, or a duration that is not positive.
         """
         return self._collision.correct(previous_positions, positions, velocities, inverse_masses, number("seconds", seconds))
 
     @property
     def lost_count(self) -> int:
-        """The number of times that a particle that was outside ended a step inside an exact map or behind its
-        surface."""
+        """The number of times that a particle ended a step inside an exact map of which it had once been outside, or on
+        the other side of its surface."""
         return self._collision.lost_count
 
 
@@ -133,7 +133,8 @@ class SurfaceCollision:
     colliders
         In their initial poses; their velocities are ignored.
     thickness
-        The distance to keep from colliders (0 to 1e9); at least a fiftieth of the mean edge length.
+        The distance to keep from colliders (0 to 1e9); the effective value is at least a fiftieth of the mean edge
+        length.
     friction
         Coulomb's coefficient; 0 is no friction (0 to 1e9).
     self_thickness
@@ -211,11 +212,11 @@ class SurfaceCollision:
         Raises
         ------
         Error
-            ``invalid_options`` for arrays of other sizes and a duration that is not positive.
+            ``invalid_options`` for arrays of the wrong size or a duration that is not positive.
         """
         return self._collision.correct(positions, velocities, number("seconds", seconds))
 
     @property
     def unresolved_count(self) -> int:
-        """Unresolved pairs of elements, summed over all steps; if 0, no faces intersect."""
+        """The number of unresolved pairs of elements, summed over all steps; if it is 0, no faces intersect."""
         return self._collision.unresolved_count

@@ -58,7 +58,7 @@ class Deformable:
 
     @property
     def mesh(self) -> Mesh:
-        """Its faces in their initial positions."""
+        """The faces in their initial positions."""
         return Mesh(self.positions, self.faces)
 
     def __len__(self) -> int:
@@ -192,7 +192,7 @@ def make_soft_body(
     Raises
     ------
     Error
-        ``invalid_mesh`` as :func:`require_valid_tetrahedra`, and when no tetrahedron uses a vertex;
+        ``invalid_mesh`` as :func:`require_valid_tetrahedra` does, and when no tetrahedron uses a vertex;
         ``invalid_options`` for numbers out of range and vertices that the mesh does not have.
     """
     options = locals()
@@ -203,8 +203,8 @@ def make_soft_body(
 def combine(parts: Sequence[Deformable]) -> Deformable:
     """Combines several deformables into one; with ``collision="surfaces_and_self"`` they collide with each other.
 
-    The particles of the parts follow one after the other. Masses do not change, so they must be in the same unit:
-    see :func:`with_masses_times`.
+    The particles of the parts follow each other in order. Masses do not change, so they must be in the same unit: see
+    :func:`with_masses_times`.
     """
     return Deformable._of(_core.combine([part._deformable for part in list_of_kind("parts", parts, Deformable)]))
 
@@ -220,7 +220,7 @@ def with_masses_times(factor: float, deformable: Deformable) -> Deformable:
 
 
 def passing_through(collider: int, deformable: Deformable) -> Deformable:
-    """The same deformable without collision with one collider, given by its index in the simulation.
+    """Returns the deformable without collision with one collider, given by its index in the simulation.
 
     After :func:`combine` this applies to the pair of this part and that collider.
     """

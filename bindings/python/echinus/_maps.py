@@ -41,13 +41,13 @@ class _Answers:
 class Contacts(_Answers):
     """One contact for each point.
 
-    A point that is outside beyond the margin, or not finite, has no contact: depth 0, normal 0, face -1, and its
-    own position as ``point``.
+    A point that is outside and farther away than the margin, or not finite, has no contact: depth 0, normal 0, face -1,
+    and its own position as ``point``.
 
     Attributes
     ----------
     array : ndarray (...)
-        All of them, as a structured array; its field ``point`` is relative to the map's origin.
+        The contacts as a structured array, whose field ``point`` is relative to the map's origin.
     """
 
     @property
@@ -67,8 +67,8 @@ class Contacts(_Answers):
 
     @property
     def point(self) -> NDArray[np.float32] | NDArray[np.float64]:
-        """(..., 3) The target of the push-out: the nearest point of the surface, or with a distance map the
-        point on the ray from its centre. In float64 for a map with an origin."""
+        """(..., 3) The target of the push-out: the nearest point of the surface or, with a distance map, the point on
+        the ray from its centre. In float64 for a map with an origin."""
         return self._place()
 
     @property
@@ -78,17 +78,17 @@ class Contacts(_Answers):
 
     @property
     def certain(self) -> NDArray[np.bool_]:
-        """(...) False where the mesh is open and its generalised winding number is within 0.1 of one half."""
+        """(...) False if the mesh is open and its generalised winding number is within 0.1 of one half."""
         return self._field("certain", np.bool_)
 
     @property
     def feature(self) -> NDArray[np.uint8]:
-        """(...) The part of the face that is nearest: 1 its interior, 2 an edge, 3 a vertex; 0 unknown."""
+        """(...) The part of the face that is nearest: 1 its interior, 2 an edge, 3 a vertex; 0 if it is not known."""
         return self._field("feature", np.uint8)
 
     @property
     def found(self) -> NDArray[np.bool_]:
-        """(...) Is there a contact? Inside, or outside within the margin."""
+        """(...) Is there a contact? The point is then inside, or outside within the margin."""
         found: NDArray[np.bool_] = self.inside | (self.normal != 0).any(axis=-1)
         return found
 
@@ -101,7 +101,7 @@ class SweepHits(_Answers):
     Attributes
     ----------
     array : ndarray (...)
-        All of them, as a structured array; its field ``point`` is relative to the map's origin.
+        The hits as a structured array, whose field ``point`` is relative to the map's origin.
     """
 
     @property
@@ -145,11 +145,11 @@ class ExactMapStatistics:
     dropped_faces
         Faces without area on the map's lattice; they are used for distances only.
     longest_list, mean_list
-        Number of faces in a band: the largest, and the mean.
+        The largest and the mean number of faces in a band.
     expected_tests
         Expected number of faces that ``contains`` tests for a point on the surface; about 10 for most meshes.
     certain_share
-        Share of the bounding sphere's volume where the map stores the answer; 1 for a closed mesh.
+        Share of the bounding sphere's volume in which the map stores the answer; 1 for a closed mesh.
     uncertain_directions
         Share of the directions from the centre along which an answer is computed somewhere.
     """
@@ -172,7 +172,7 @@ class DistanceMapStatistics:
     max_entries
         The largest number of crossings along one direction.
     corrected_entries, clamped_entries
-        Entries that the correction moved, and those of them whose correction was cut short.
+        The number of entries that the correction moved, and of those whose correction was cut short.
     wrong_parity_share
         Share of directions that see a hole; 0 for a closed mesh.
     """
@@ -281,7 +281,7 @@ class _Map(Generic[CoreMap]):
 
 
 class ExactMap(_Map[_core.ExactMap]):
-    """The map whose answers are exact on its lattice, whose step is 1.9e-6 of the bounding radius.
+    """The map whose answers are exact on its lattice; a lattice step is 1.9e-6 of the bounding radius.
 
     Parameters
     ----------
@@ -305,8 +305,8 @@ class ExactMap(_Map[_core.ExactMap]):
     Raises
     ------
     Error
-        ``invalid_mesh`` as :func:`inspect`, ``invalid_scene`` for an option out of range, ``invalid_options``
-        for a budget that is too small.
+        ``invalid_mesh`` as :func:`inspect` does, ``invalid_scene`` for an option out of range, ``invalid_options`` for
+        a budget that is too small.
     """
 
     def __init__(
@@ -352,9 +352,9 @@ class ExactMap(_Map[_core.ExactMap]):
     ) -> Any:
         """Signed distances from the surface, **negative inside and positive outside**, however far away.
 
-        The sign is that of :meth:`contains`, even if the distance is 0: it is then -0 inside. For an open
-        mesh :attr:`Contacts.certain` tells where it is certain. Where parts overlap, the nearest face may lie
-        inside the solid.
+        The sign is that of :meth:`contains`, even if the distance is 0: it is then -0 inside. For an open mesh
+        :attr:`Contacts.certain` tells whether it is certain. If parts overlap, the nearest face may lie inside the
+        solid.
 
         Parameters
         ----------
@@ -394,8 +394,8 @@ class ExactMap(_Map[_core.ExactMap]):
         points : array_like (..., 3)
             A point with NaN has the winding number NaN, and one with infinity has 0.
         tolerance
-            The largest error of the result, which is never on the wrong side of an odd multiple of one half; 0 counts
-            as 1e-8.
+            The largest error of the result; the result is never on the wrong side of an odd multiple of one half. 0
+            counts as 1e-8.
         threads
             0: all cores. The answers do not depend on it.
         out : ndarray (...) of float32, optional
@@ -435,8 +435,8 @@ class DistanceMap(_Map[_core.DistanceMap]):
     mesh
         Anything with ``vertices`` and ``faces``, closed and counter-clockwise seen from outside.
     directions
-        Samples of longitude and of colatitude; (200, 200) by default. Grids ``"spherical"`` and
-        ``"ellipsoidal"`` only.
+        The numbers of samples of longitude and of colatitude; (200, 200) by default. Only for the grids ``"spherical"``
+        and ``"ellipsoidal"``.
     grid
         The grid of directions.
     divisions
@@ -458,7 +458,8 @@ class DistanceMap(_Map[_core.DistanceMap]):
     Raises
     ------
     Error
-        ``invalid_mesh`` as :func:`inspect`, ``invalid_scene`` for an option out of range or of another grid.
+        ``invalid_mesh`` as :func:`inspect` does, ``invalid_scene`` for an option that is out of range or belongs to a
+        different grid.
     """
 
     def __init__(
@@ -494,8 +495,7 @@ def load(path: Path) -> AnyMap:
     Raises
     ------
     Error
-        ``unreadable``, ``wrong_format``, ``unsupported_version`` or ``damaged``; the sentence begins with the
-        path.
+        ``unreadable``, ``wrong_format``, ``unsupported_version`` or ``damaged``; the message begins with the path.
     """
     return wrap(_core.load_map(path_of(path)))
 
@@ -513,6 +513,6 @@ def _map_from_bytes(data: bytes) -> AnyMap:
 
 
 def _options(kind: str, given: dict[str, Any]) -> str:
-    """As under the key ``map`` of a scene; what is None keeps its default."""
+    """The options as JSON, as under the key ``map`` of a scene; an option that is None keeps its default."""
     others = ("self", "mesh", "threads")
     return json_of({"kind": kind} | {key: value for key, value in given.items() if value is not None and key not in others})

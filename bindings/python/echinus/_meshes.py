@@ -35,8 +35,8 @@ class Mesh:
     Parameters
     ----------
     vertices : array_like (n, 3)
-        Positions, rounded to float32 if that can represent the shape. For a mesh far from 0, such as a
-        building in geographic coordinates, it cannot, so they stay float64.
+        Positions, rounded to float32 if float32 can represent the shape. For a mesh far from 0, such as a building in
+        geographic coordinates, it cannot, so they stay float64.
     faces : array_like (m, 3)
         Whole numbers: the vertices of each triangle, counter-clockwise seen from outside.
 
@@ -106,7 +106,7 @@ def read_mesh(path: Path) -> Mesh:
     Raises
     ------
     Error
-        ``unreadable``, ``wrong_format``, ``damaged`` or ``invalid_mesh``; the sentence begins with the path.
+        ``unreadable``, ``wrong_format``, ``damaged`` or ``invalid_mesh``; the message begins with the path.
     """
     return Mesh(*_core.read_mesh(path_of(path)))
 
@@ -117,7 +117,7 @@ def write_mesh(path: Path, mesh: MeshLike) -> None:
     Raises
     ------
     Error
-        ``unwritable``, ``wrong_format`` for another extension, or ``invalid_mesh``.
+        ``unwritable``, ``wrong_format`` for any other extension, or ``invalid_mesh``.
     """
     _core.write_mesh(path_of(path), *arrays_of(mesh))
 
@@ -149,8 +149,8 @@ class MeshReport:
         The smallest sphere that encloses all vertices used by faces.
     rounding_step
         The spacing of float32 at the largest coordinate, if all coordinates are float32 numbers and half of
-        this spacing exceeds a step of a map's lattice; otherwise 0. If the coordinates were rounded before,
-        the error of the shape is up to half the spacing.
+        this spacing exceeds a step of a map's lattice; otherwise 0. If the coordinates have been rounded to float32,
+        the shape is wrong by up to half the spacing.
     """
 
     face_count: int
@@ -192,24 +192,25 @@ def weld(mesh: MeshLike) -> Mesh:
 
 @dataclass(frozen=True)
 class RepairReport:
-    """The changes that :func:`repair` made. Faces are given by their previous indices; faces that close holes follow.
+    """The changes that :func:`repair` made. Faces are given by their indices in the given mesh, after which faces that
+    close holes are numbered.
 
     Attributes
     ----------
     holes_left
-        Larger holes, and rims of sheets; 0 unless holes were to be closed.
+        The number of larger holes and rims of sheets; 0 unless holes were to be closed.
     sheets_thickened
-        Pieces of surface between rims.
+        The number of pieces of surface between rims.
     faces_added
-        To fill seams, to close holes and to thicken sheets.
+        The number of faces that fill seams, close holes and thicken sheets.
     vertices_welded
-        Vertices that were replaced by others in all faces.
+        The number of vertices that were replaced by others in all faces.
     slivers_dropped
         Loose slivers, and faces that lost their area by welding.
     faces_turned
-        Faces flipped so that neighbours agree.
+        The number of faces that were flipped so that neighbours agree.
     seams_filled
-        Filled holes of zero width.
+        The number of filled holes of zero width.
     """
 
     duplicate_faces_dropped: tuple[int, ...]
@@ -253,17 +254,17 @@ def repair(
     orient_faces: bool = True,
     weld_distance: float = 0,
 ) -> tuple[Mesh, RepairReport]:
-    """A copy with the repairs that need no guess, and a report of them. A closed mesh stays closed.
+    """Makes a copy with the repairs that require no guesswork, and a report of them. A closed mesh stays closed.
 
     On request, ``close_holes``, ``drop_inner_faces`` and ``sheet_thickness`` make open surfaces and
-    assemblies solid by guessing. The order is: welding of seams, duplicate faces, doubled patches, slivers,
-    orientation, filling of seams, holes, inside-out parts, inner faces, sheets.
+    assemblies solid by guessing. Seams are welded first; then follow duplicate faces, doubled patches, slivers,
+    orientation, the filling of seams, holes, inside-out parts, inner faces and sheets.
 
     Parameters
     ----------
     mesh
-        Vertices are distinguished by index: call :func:`weld` first, or close seams, if equal positions mean
-        the same vertex.
+        Vertices are distinguished by index: call :func:`weld` first, or close seams, if vertices at equal positions are
+        meant to be one.
     drop_duplicate_faces
         Among faces with the same three vertices, drop opposite ones in pairs, and keep the first of the rest.
     drop_doubled_patches
@@ -292,8 +293,8 @@ def repair(
     Raises
     ------
     Error
-        ``invalid_mesh`` as :func:`inspect`; ``invalid_options`` for a number out of range, and for a thickness or a weld
-        distance that does not suit the mesh.
+        ``invalid_mesh`` as :func:`inspect` does; ``invalid_options`` for a number out of range, and for a thickness or
+        a weld distance that does not suit the mesh.
     """
     options = locals()
     arrays, report = _core.repair(*arrays_of(mesh), options)
@@ -363,7 +364,7 @@ class Intersections:
     closed : tuple of bool
         For each curve whether a segment joins its last point to its first.
     length
-        Of all curves.
+        The total length of all curves.
     """
 
     pairs: NDArray[np.uint32]
@@ -413,9 +414,9 @@ class CheckedMeshes:
     a, b
         Indices of the meshes; equal for a mesh and itself.
     found
-        Their intersections. It has no pairs where one mesh is wholly inside the other.
+        Their intersections. There are no pairs if one mesh is entirely inside the other.
     a_in_b, b_in_a
-        ``None`` where the other mesh is not closed or no exact map can hold it, and for a mesh and itself.
+        ``None`` if the other mesh is not closed or no exact map of it is possible, and for a mesh and itself.
     """
 
     a: int
@@ -431,19 +432,20 @@ def check(meshes: Sequence[MeshLike], *, threads: int = 0) -> list[CheckedMeshes
     Parameters
     ----------
     meshes
-        In one frame; open or closed.
+        Open or closed meshes in the same frame.
     threads
         0: all cores.
 
     Returns
     -------
     list of CheckedMeshes
-        Those that intersect, and those of which one has a vertex inside the other, ascending.
+        The pairs that intersect, or of which one mesh has a vertex inside the other, and the meshes that intersect
+        themselves, ascending.
 
     Raises
     ------
     Error
-        ``invalid_mesh``; the sentence names the number of the mesh.
+        ``invalid_mesh``; the message names the number of the mesh.
     """
     found = _core.check([arrays_of(mesh, f"meshes[{i}]") for i, mesh in enumerate(meshes)], threads_of(threads))
     return [

@@ -63,12 +63,12 @@ class SimulationOptions:
 
 @dataclass(frozen=True)
 class SimulationProfile:
-    """Times and counts of all steps so far.
+    """Times and counts of all steps since the simulation began.
 
     Attributes
     ----------
     integration_seconds, constraint_seconds, collision_seconds
-        The times that these parts took.
+        The computing time of each part.
     query_count, contact_count, map_query_count
         Numbers of queries of particles, of contacts found, and of queries that needed the map.
     rescued_count
@@ -80,7 +80,8 @@ class SimulationProfile:
     measured_pair_count
         With surface collision: number of pairs whose distance was measured.
     unresolved_count
-        Unresolved pairs of elements, summed over all steps: no free space was proven. If 0, no faces intersect.
+        The number of unresolved pairs of elements, for which no free space was proven, summed over all steps. If it is
+        0, no faces intersect.
     """
 
     integration_seconds: float
@@ -252,7 +253,7 @@ class Simulation:
         allow_open_colliders: bool = False,
         threads: int = 0,
     ) -> Simulation:
-        """Makes the simulation of a scene, at its start.
+        """Makes the simulation of a scene, in its initial state.
 
         Parameters
         ----------
@@ -360,7 +361,7 @@ class Simulation:
 
     @property
     def mesh(self) -> Mesh:
-        """The faces as they are now, a copy."""
+        """A copy of the faces in their present positions."""
         return Mesh(self.positions.copy(), self.faces)
 
     @property
@@ -375,7 +376,7 @@ class Simulation:
 
     @property
     def frame(self) -> int:
-        """Frames computed so far."""
+        """The number of frames that have been computed."""
         return self._simulation.frame
 
     @property
@@ -408,7 +409,7 @@ class Simulation:
 
     @property
     def profile(self) -> SimulationProfile:
-        """Times and counts so far."""
+        """Times and counts of all steps since the simulation began."""
         return SimulationProfile(**self._simulation.profile)
 
     def set_collider_velocity(self, collider: int, linear: Sequence[float], angular: Sequence[float]) -> None:
@@ -432,14 +433,16 @@ class Simulation:
         )
 
     def set_collider_keyframes(self, collider: int, keys: Sequence[PoseKey]) -> None:
-        """Makes a model follow keyframes: each frame moves it to the pose of :func:`pose_at` at the frame's end.
+        """Makes a model follow keyframes: each frame moves it to the pose that :func:`pose_at` returns for the frame's
+        end.
 
-        It starts from its present pose, so place it at the present ``pose_at`` first. Without keys it does not move.
+        The model starts from its present pose, so place it at the present ``pose_at`` first. Without keys it does not
+        move.
 
         Parameters
         ----------
         keys
-            Their times ascend, in seconds since the simulation began.
+            The keyframes; their times ascend, in seconds since the simulation began.
         """
         self._simulation.set_collider_keyframes(index("collider", collider), key_arguments(keys))
 
@@ -451,7 +454,8 @@ class Simulation:
         Parameters
         ----------
         vertices : array_like (vertex_count, 3)
-            In the model's own frame: as many as the mesh from which its map was built has, in the same order.
+            Positions in the model's own frame, as many as the mesh from which its map was built has vertices, in the
+            same order.
 
         Raises
         ------
@@ -461,10 +465,10 @@ class Simulation:
         self._simulation.set_collider_vertices(index("collider", collider), _core.float_array(vertices, "vertices"))
 
     def set_collider_cache(self, collider: int, cache: VertexCache) -> None:
-        """Each frame moves the vertices of a model to those of the cache at the frame's end.
+        """Makes each frame move the vertices of a model to those of the cache at the frame's end.
 
-        Build its map from ``cache.at(0)``; otherwise the first frame moves it there. The requirements are
-        those of :meth:`set_collider_vertices`.
+        Build the model's map from ``cache.at(0)``; otherwise the first frame moves the model there. The requirements
+        are those of :meth:`set_collider_vertices`.
         """
         core = of_kind("cache", cache, VertexCache)._cache
         self._simulation.set_collider_cache(index("collider", collider), core)
@@ -473,13 +477,13 @@ class Simulation:
         """The load that the deformables exerted on a model in the last frame, averaged over the frame; 0
         before the first.
 
-        It is due to contact and friction, in N and N m, and always 0 with ``jakobsen``. A program that
-        applies it to a rigid body and moves the model with the body exchanges momentum with the deformables.
+        It is caused by contact and friction, in N and N m, and always 0 with ``jakobsen``. A program that applies it to
+        a rigid body and moves the model with the body exchanges momentum with the deformables.
         """
         return Load(*self._simulation.load_on(index("collider", collider)))
 
     def set_collider_free(self, collider: int, mass: float) -> None:
-        """Lets a model move freely from its present velocities, as a rigid body of uniform density.
+        """Makes a model move freely from its present velocities, as a rigid body of uniform density.
 
         Gravity and the deformables move it. This needs an exact map of a closed mesh and the solver ``newton``.
 
@@ -491,12 +495,12 @@ class Simulation:
         self._simulation.set_collider_free(index("collider", collider), number("mass", mass))
 
     def record_contacts(self, is_on: bool = True) -> None:
-        """Sets whether the following frames record their contacts; off by default. It is not part of
-        a saved state."""
+        """Sets whether the following frames record their contacts; off by default. The setting is not part of a saved
+        state."""
         self._simulation.record_contacts(flag("is_on", is_on))
 
     def contact_points(self) -> ContactPoints:
-        """The contacts that were recorded in the last frame, as arrays that are copies.
+        """Copies of the contacts that were recorded in the last frame.
 
         Their impulses divided by the time step sum to the opposite of :meth:`load_on` of each model, except for the
         loads of attached particles and of particles whose displacement was truncated. ``jakobsen`` records none.
@@ -515,7 +519,8 @@ class Simulation:
         wind
             Velocity of the air, units per second.
         rate
-            Per second, not negative; higher for lighter cloth.
+            The rate at which the cloth takes on the velocity of the air, per second; not negative, higher for lighter
+            cloth.
         """
         self._simulation.blow(vector("wind", wind), number("rate", rate))
 
@@ -524,15 +529,16 @@ class Simulation:
         return self._simulation.save_state()
 
     def restored(self, state: bytes) -> Simulation:
-        """Makes another simulation, with the inputs of this one, that resumes from a saved state bit for bit.
+        """Makes a new simulation with the inputs of this one, which resumes from a saved state bit for bit.
 
         This simulation does not change, and neither do views of its positions.
 
         Raises
         ------
         Error
-            ``wrong_format``, ``unsupported_version`` or ``damaged`` for bytes that are not a state of
-            this version; ``invalid_options`` for a state of another simulation, naming the difference.
+            ``wrong_format``, ``unsupported_version`` or ``damaged`` for bytes that are not a state, are of another
+            version, or are truncated or altered; ``invalid_options`` for a state of another simulation, naming the
+            difference.
         """
         return self._of(self._simulation.restored(of_kind("state", state, bytes)), self._frame_limit)
 

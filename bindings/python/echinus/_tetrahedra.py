@@ -56,11 +56,12 @@ class TetrahedraFile:
     Attributes
     ----------
     mesh
-        Valid; every vertex is used.
+        The body; it is valid, and every vertex is used.
     turned_tetrahedra
-        Tetrahedra with negative volume, in which two corners were exchanged: the order is a convention of the file.
+        The number of tetrahedra with negative volume, in which two corners were exchanged: their order is a convention of
+        the file.
     dropped_vertices
-        Vertices that no tetrahedron uses.
+        The number of vertices that no tetrahedron uses.
     """
 
     mesh: TetrahedralMesh
@@ -77,7 +78,7 @@ def read_tetrahedra(path: Path) -> TetrahedraFile:
     Raises
     ------
     Error
-        ``unreadable``, ``wrong_format``, ``damaged`` or ``invalid_mesh``; the sentence begins with the path.
+        ``unreadable``, ``wrong_format``, ``damaged`` or ``invalid_mesh``; the message begins with the path.
     """
     arrays, turned, dropped = _core.read_tetrahedra(path_of(path))
     return TetrahedraFile(TetrahedralMesh(*arrays), turned, dropped)
@@ -89,7 +90,7 @@ def write_tetrahedra(path: Path, mesh: TetrahedralMesh) -> None:
     Raises
     ------
     Error
-        ``unwritable``, ``wrong_format`` for another extension, or ``invalid_mesh``.
+        ``unwritable``, ``wrong_format`` for any other extension, or ``invalid_mesh``.
     """
     _core.write_tetrahedra(path_of(path), *_arrays_of(mesh))
 
@@ -97,7 +98,7 @@ def write_tetrahedra(path: Path, mesh: TetrahedralMesh) -> None:
 def make_solid_box(
     size: tuple[float, float, float] = (1, 1, 1), segments: tuple[int, int, int] = (1, 1, 1)
 ) -> TetrahedralMesh:
-    """Makes a box around the origin, of cuboids that are divided into five tetrahedra each.
+    """Makes a box around the origin from cuboids that are divided into five tetrahedra each.
 
     Vertex (i, j, k), counted along x, y and z, has the index
     ``(k * (segments[1] + 1) + j) * (segments[0] + 1) + i``.
@@ -120,11 +121,11 @@ class Tetrahedralization:
     Attributes
     ----------
     mesh
-        Valid; every vertex is used.
+        The body; it is valid, and every vertex is used.
     size
-        Of the lattice.
+        The size with which the lattice was made.
     removed_tetrahedra
-        Tetrahedra left out because parts of the body would have met in only an edge or a vertex.
+        The number of tetrahedra left out because parts of the body would have met in only an edge or a vertex.
     """
 
     mesh: TetrahedralMesh
@@ -206,11 +207,11 @@ class TetrahedralReport:
     Attributes
     ----------
     vertex_count
-        Vertices that tetrahedra use.
+        The number of vertices that tetrahedra use.
     volume, least_volume
-        Of all tetrahedra, and of the smallest.
+        The volume of all tetrahedra, and of the smallest.
     least_angle_deg, greatest_angle_deg
-        Between two faces of a tetrahedron.
+        The extreme angles between two faces of a tetrahedron.
     boundary
         The report of :func:`inspect` on :func:`boundary`.
     """
@@ -232,7 +233,7 @@ def inspect_tetrahedra(mesh: TetrahedralMesh) -> TetrahedralReport:
     Raises
     ------
     Error
-        ``invalid_mesh`` as :func:`require_valid_tetrahedra`.
+        ``invalid_mesh`` as :func:`require_valid_tetrahedra` does.
     """
     report = _core.inspect_tetrahedra(*_arrays_of(mesh))
     report["boundary"] = report_of(report["boundary"])
@@ -304,12 +305,12 @@ def embed(mesh: TetrahedralMesh, points: ArrayLike, *, threads: int = 0) -> Embe
     Parameters
     ----------
     points : array_like (n, 3)
-        Finite.
+        The points; they must be finite.
 
     Raises
     ------
     Error
-        ``invalid_mesh`` as :func:`require_valid_tetrahedra`, for a point that is not finite, and for a body so far
+        ``invalid_mesh`` as :func:`require_valid_tetrahedra` does, for a point that is not finite, and for a body so far
         from 0 that its vertices are float64.
     """
     embedding = Embedding.__new__(Embedding)

@@ -62,7 +62,7 @@ class Corpus:
             raise ValueError(f"shard must be (i, n) with i from 0 to n - 1, not {self.shard}")
 
     def groups(self) -> list[tuple[str | None, tuple[Mesh, ...]]]:
-        """For all parts: the groups of meshes that are labelled together, each with its archive if there is one."""
+        """The groups of meshes of all parts; a group is labelled together, and has an archive or None."""
         if self.form != "webdataset":
             return [(None, (mesh,)) for mesh in self.meshes]
         starts = range(0, len(self.meshes), self.archive_size)

@@ -95,8 +95,8 @@ def _serve(pipe: Connection, memory: int) -> None:
 
 @contextlib.contextmanager
 def _deaf_to_interrupts() -> Iterator[None]:
-    """A process that is started meanwhile ignores Ctrl-C; the process that distributes the tasks handles it, and ends its
-    workers."""
+    """Makes processes that are started in this context ignore Ctrl-C; the process that distributes the tasks handles
+    it, and ends its workers."""
     resource_tracker.ensure_running()  # its start, which comes with the first process, would unblock the signal
     before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
     try:
@@ -106,7 +106,8 @@ def _deaf_to_interrupts() -> Iterator[None]:
 
 
 def _end_with_parent() -> None:
-    """Otherwise the worker of a killed run would go on writing next to the next run, which has the lock."""
+    """Ends this worker with its parent. Otherwise the worker of a killed run would continue to write while the next run
+    has the lock."""
     with contextlib.suppress(AttributeError):  # Linux only
         set_death_signal = 1
         ctypes.CDLL(None).prctl(set_death_signal, signal.SIGKILL)

@@ -95,7 +95,7 @@ def _opened(path: pathlib.Path) -> TextIO:
 
 
 def _lock(descriptor: int, how: int) -> None:
-    """Raises BlockingIOError where another process holds the lock. Does nothing on a file system without locks."""
+    """Raises BlockingIOError if another process holds the lock. Does nothing on a file system without locks."""
     try:
         fcntl.flock(descriptor, how)
     except BlockingIOError:

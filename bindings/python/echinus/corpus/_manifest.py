@@ -102,7 +102,8 @@ class Manifest:
 def changes_of(
     meshes: Sequence[Mesh], record_of: Mapping[str, Record], most: int, progress: TextIO | None
 ) -> Iterator[tuple[Mesh, Change]]:
-    """Meshes whose files differ from those of their records, for instance because they could not be read then."""
+    """Meshes whose files differ from those of their records, for instance because a file could not be read then, or
+    cannot now."""
     for mesh, now in zip(meshes, fingerprints([path for _, path in meshes], most, progress), strict=True):
         record = record_of[mesh[0]]
         before = (record.get("source_bytes"), record.get("source_sha256"))
@@ -192,7 +193,7 @@ def _size(path: pathlib.Path) -> int | None:
 
 
 def _remove(name: str, folder: pathlib.Path) -> None:
-    """Removes a file, and the folders of its name that are then empty."""
+    """Removes a file, and those folders of its path that are then empty."""
     path = folder / name
     path.unlink(missing_ok=True)
     with contextlib.suppress(OSError):  # other files are in it, or it is not there

@@ -28,7 +28,7 @@ class Refused(Exception):
     Attributes
     ----------
     again : bool
-        Another attempt may succeed, because the reason lies in the machine, not in the mesh.
+        Whether another attempt may succeed, because the reason lies in the machine, not in the mesh.
     """
 
     def __init__(self, reason: str, *, again: bool = False) -> None:
@@ -62,11 +62,12 @@ class Sampling:
     distances
         Also compute signed distances and nearest points. Without them a closed mesh takes a tenth of the time.
     repair
-        Make the repairs that need no guess, as :func:`echinus.repair` does.
+        Make the repairs that require no guesswork, as :func:`echinus.repair` does.
     close_holes, drop_inner_faces
-        Make meshes solid, like the arguments of :func:`echinus.repair` with these names, in its order.
+        Make meshes solid, as the arguments of :func:`echinus.repair` with these names do, in its order.
     thicken
-        Likewise: the thickness of the solids that replace sheets, as a share of the longest edge of the mesh's bounding box.
+        Also makes meshes solid: the thickness of the solids that replace sheets, as a share of the longest edge of the
+        mesh's bounding box.
     min_certain
         Meshes with a smaller share of certain labels are refused.
     max_faces
@@ -129,18 +130,18 @@ class Samples:
     points : ndarray (n, 3)
     occupancy : ndarray (n) of bool
     distance : ndarray (n) of float32
-        Signed, negative inside; empty without ``Sampling.distances``.
+        Signed distances, negative inside; empty without ``Sampling.distances``.
     nearest : ndarray (n, 3) of float32
-        The nearest points of the surface; likewise.
+        The nearest points of the surface; empty without ``Sampling.distances``.
     certain : ndarray (n) of bool
-        False where the mesh is open and its generalised winding number is within 0.1 of the threshold between inside and
+        False if the mesh is open and its generalised winding number is within 0.1 of the threshold between inside and
         outside.
     surface, normals : ndarray (m, 3)
         Points of the surface, and unit normals of their faces.
     loc, scale
         point_in_frame = (point - loc) / scale
     report
-        All that is known about the mesh and its labels.
+        The properties of the mesh and of its labels.
     """
 
     points: NDArray[np.floating[Any]]
@@ -262,7 +263,7 @@ def _used_vertices(mesh: Mesh) -> NDArray[np.float64]:
 
 
 def _longest_edge(mesh: Mesh) -> float:
-    """Of the bounding box."""
+    """The longest edge of the bounding box."""
     inspect(mesh)  # refuses what has none
     used = _used_vertices(mesh)
     return float((used.max(axis=0) - used.min(axis=0)).max())
@@ -323,7 +324,8 @@ class _Surface:
         return points, face
 
     def _find(self, share: NDArray[np.float64]) -> NDArray[np.intp]:
-        """The faces at shares of the area in [0, 1): usually the face at which the share's bin begins, which needs no search."""
+        """The faces at shares of the area in [0, 1): usually the face at which the share's bin begins, which needs no
+        search."""
         face = self._face_of_bin.take((share * self._bins).astype(np.intp))
         area = share * self._total[-1]
         beyond = np.flatnonzero(self._total.take(face) <= area)

@@ -110,7 +110,8 @@ def _write(task: Task, name: str, content: bytes) -> Record:
 
 @contextlib.contextmanager
 def whole_file(target: pathlib.Path, unfinished: str) -> Iterator[BinaryIO]:
-    """A file that is in the folder ``unfinished``, under another name, until it is complete. Errors of the system name it."""
+    """A file that is in the folder ``unfinished``, under another name, until it is complete. Errors of the system name
+    it."""
     with naming(target):
         target.parent.mkdir(parents=True, exist_ok=True)
         part = os.path.join(unfinished, secrets.token_hex(8))

@@ -52,8 +52,8 @@ class Findings:
 
 
 def verify(corpus: Corpus) -> list[str]:
-    """The faults of the labels in a folder, and the files there that belong to no labelled mesh; nothing, if each mesh
-    was refused or has its labels once, with the bytes of the manifests."""
+    """The faults of the labels in a folder, and the files there that belong to no labelled mesh. There are none if each
+    mesh was refused or has its labels once, with the bytes of the manifests."""
     return examine(corpus).sentences()
 
 
@@ -84,7 +84,7 @@ def examine(corpus: Corpus, progress: TextIO | None = None) -> Findings:
 
 
 def _of_other_meshes(corpus: Corpus, records: Iterable[Record], progress: TextIO | None) -> Iterator[str]:
-    """Labels, or refusals, of mesh files that have changed since."""
+    """The labels and refusals of mesh files that have changed since."""
     record_of = {record["mesh"]: record for record in records if "again" not in record}
     meshes = [mesh for mesh in corpus.meshes if mesh[0] in record_of]
     for (name, path), change in changes_of(meshes, record_of, corpus.max_bytes, progress):
@@ -96,7 +96,7 @@ def _of_other_meshes(corpus: Corpus, records: Iterable[Record], progress: TextIO
 
 
 def _misplaced(records: Iterable[Record], archive_of: dict[str, str | None]) -> Iterator[str]:
-    """Archives from before meshes were added to the corpus or removed from it."""
+    """Labels in archives that were made before meshes were added to the corpus or removed from it."""
     archives = {archive for archive in archive_of.values() if archive is not None}
     for record in (record for record in records if "mesh" in record):
         for file in record.get("files", []):
