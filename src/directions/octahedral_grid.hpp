@@ -203,8 +203,7 @@ class OctahedralGrid {
             for (std::uint32_t i = 0; i < 2 * n; ++i) {
                 const std::array<std::uint32_t, 4> q{canonical(i, j), canonical(i + 1, j),
                                                      canonical(i + 1, j + 1), canonical(i, j + 1)};
-                const std::size_t turn =
-                    (i >= n) != (j >= n) ? 1 : 0; // depends on the direction of the diagonal
+                const std::size_t turn = (i >= n) != (j >= n) ? 1 : 0; // depends on the diagonal
                 visit(std::array{q[turn], q[turn + 1], q[(turn + 3) % 4]});
                 visit(std::array{q[turn + 1], q[(turn + 2) % 4], q[(turn + 3) % 4]});
             }

@@ -51,8 +51,7 @@ Interpolation<Grid> interpolation_at(const DistanceMapView& map, const Grid&,
     }
     const auto& usable = result.usable;
     if (usable[0] && usable[1] && usable[2] && usable[3]) return result; // the weights already add up to 1
-    for (float& weight : result.weight)
-        weight /= result.weight_sum; // the reference's weight alone is at least 1/4
+    for (float& weight : result.weight) weight /= result.weight_sum; // the reference's weight is at least 1/4
     return result;
 }
 

@@ -106,8 +106,7 @@ void AtomicFile::overwrite(long offset, const void* data, std::size_t byte_count
 }
 
 void AtomicFile::commit() {
-    if (std::fflush(file_) != 0)
-        fail("write"); // a full disk may be noticed only now, when buffered bytes are written
+    if (std::fflush(file_) != 0) fail("write"); // a full disk is noticed when the buffer is written
     if (!is_in_place_) {
         // If the name reached the disk before the bytes, a power cut could leave an empty file with that
         // name.

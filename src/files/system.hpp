@@ -68,8 +68,8 @@ void remove_unless_held(const std::filesystem::path& path) noexcept;
 // ---- Threads ----
 
 /// Passes a value to `end` when the calling thread ends, unless it is the thread that ends the program. Only
-/// the last value of a thread counts. (With GCC for Windows, a thread_local object is destroyed before its
-/// destructor runs.)
+/// the last value of a thread counts. (With GCC for Windows, the memory of a thread_local object is freed
+/// before its destructor runs.)
 /// @pre the value is not null, and `end` is the same in all calls
 /// @throws std::bad_alloc
 void give_at_thread_end(void (*end)(void*), void* value);

@@ -60,8 +60,7 @@ class BoxTree {
 inline BoxTree::BoxTree(const std::vector<Box>& boxes) {
     leaves_.reserve(boxes.size());
     for (std::uint32_t item = 0; item < boxes.size(); ++item) leaves_.push_back({boxes[item], item});
-    nodes_.reserve(
-        leaves_.size()); // the most nodes that there may be: a node's child has at least two leaves
+    nodes_.reserve(leaves_.size()); // the most that there may be: a node's child has at least two leaves
     add_node(0, kept_as<std::uint32_t>(leaves_.size()));
 }
 

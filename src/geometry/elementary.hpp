@@ -53,9 +53,9 @@ inline constexpr std::array<float, 8> kAtanCoefficients{-0.0040545650F, 0.021862
                                                         0.0964219445F,  -0.1390862912F, 0.1994656622F,
                                                         -0.3332985938F, 0.9999993443F};
 
-/// The angle of (x, y), counter-clockwise from the x axis, in [-pi, pi]. Error at most 4e-7 rad, a 40 000th
-/// of a cell of 200 samples. atan2(0, 0) is 0; the sign of a zero y distinguishes pi from -pi. Not for NaN or
-/// infinity.
+/// The angle of (x, y), counter-clockwise from the x axis, in [-pi, pi]; 0 for the origin. The sign of a zero
+/// y distinguishes pi from -pi. The error is at most 4e-7 rad, 1/40 000 of a cell if 200 samples span half a
+/// turn. Meaningless for NaN and infinity.
 inline float atan2_polynomial(float y, float x) {
     const float ax = std::fabs(x);
     const float ay = std::fabs(y);

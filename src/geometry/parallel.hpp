@@ -12,7 +12,8 @@ namespace echinus {
 
 /// Calls `body(begin, end)` for consecutive ranges that together cover [0, count), on up to `thread_count`
 /// threads (0: all cores). The ranges differ between runs and machines, so the result must not depend on
-/// where they are cut. Exceptions of the body reach the caller. Without oneTBB: one range, this thread.
+/// where they are cut. Exceptions of the body reach the caller. Without oneTBB, this thread processes one
+/// range.
 void parallel_for(std::size_t count, unsigned thread_count,
                   const std::function<void(std::size_t begin, std::size_t end)>& body);
 

@@ -41,9 +41,8 @@ class Scratch {
 
     Memory buffer_;
     std::size_t size_ = 0, used_ = 0;
-    std::size_t beyond_ = 0,
-                most_beyond_ =
-                    0; ///< bytes that the buffer has no room for: at present, and the most at a time
+    /// Bytes for which the buffer has no room: at present, and the most at a time.
+    std::size_t beyond_ = 0, most_beyond_ = 0;
     Header* last_ = nullptr;
 };
 
@@ -52,11 +51,9 @@ template <typename T>
 struct ScratchAllocator {
     using value_type = T;
 
-    ScratchAllocator(Scratch& scratch_in)
-        : scratch(&scratch_in) {} // NOLINT: implicit, since vectors are given a Scratch
+    ScratchAllocator(Scratch& scratch_in) : scratch(&scratch_in) {} // NOLINT: vectors are given a Scratch
     template <typename Other>
-    ScratchAllocator(const ScratchAllocator<Other>& other)
-        : scratch(other.scratch) {} // NOLINT: implicit, as for other allocators
+    ScratchAllocator(const ScratchAllocator<Other>& other) : scratch(other.scratch) {} // NOLINT: as others do
 
     T* allocate(std::size_t count) { return static_cast<T*>(scratch->take(count * sizeof(T))); }
     void deallocate(T* items, std::size_t) noexcept { scratch->give_back(items); }

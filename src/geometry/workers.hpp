@@ -21,7 +21,7 @@ class Workers {
   public:
     /// @param thread_count  0: all cores. Without oneTBB there is only one thread
     explicit Workers(unsigned thread_count = 1);
-    /// Creates as many threads of its own, without a session.
+    /// The copy has as many threads of its own, and no session.
     Workers(const Workers& other) : Workers(static_cast<unsigned>(other.count_)) {}
     Workers& operator=(const Workers&) = delete;
     ~Workers();

@@ -197,8 +197,7 @@ std::vector<bool> find_closed_sets(std::span<const EdgeUse> edge_uses,
                                    std::span<const std::uint32_t> set_of_face, std::size_t set_count,
                                    const std::vector<bool>& is_turned) {
     std::vector<bool> is_closed(set_count, true);
-    std::vector<std::int64_t> balance(
-        set_count); // of the set's faces along one edge: those in one direction minus those in the other
+    std::vector<std::int64_t> balance(set_count); // of the set's faces along one edge
     for_each_edge(edge_uses, [&](std::span<const EdgeUse> uses) {
         for (const EdgeUse& use : uses) {
             const bool is_ascending = use.ascending != (!is_turned.empty() && is_turned[use.face]);

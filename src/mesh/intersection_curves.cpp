@@ -21,8 +21,7 @@ namespace {
 /// A vertex, an edge or a face of a mesh.
 struct Part {
     std::uint8_t dimension;
-    std::uint32_t first,
-        second; ///< for a vertex or an edge, the vertices, ascending; for a face, its number twice
+    std::uint32_t first, second; ///< of a vertex or an edge, its vertices, ascending; of a face, its number
 
     friend auto operator<=>(const Part&, const Part&) = default;
 };
@@ -90,9 +89,8 @@ struct Face {
         const Vec3d normal = cross(Vec3d(corners[1]) - origin, Vec3d(corners[2]) - origin);
         const double start = dot(normal, from - origin), end = dot(normal, to - origin);
         const double share = start / (start - end);
-        return Vec3f(from +
-                     (to - from) *
-                         (share >= 0 && share <= 1 ? share : 0.5)); // rounding may move it out of the segment
+        // Rounding may move the quotient out of the segment.
+        return Vec3f(from + (to - from) * (share >= 0 && share <= 1 ? share : 0.5));
     }
 };
 

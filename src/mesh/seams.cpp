@@ -90,8 +90,7 @@ bool are_balanced(std::span<HalfEdge> edges) {
 } // namespace
 
 bool is_closed(std::span<const Triangle> faces, std::size_t vertex_count) {
-    std::vector<std::uint32_t> ends(vertex_count +
-                                    1); // 32 bits suffice for the three half edges of kMostFaces faces
+    std::vector<std::uint32_t> ends(vertex_count + 1); // 32 bits suffice for three half edges of each face
     for_each_half_edge(faces, [&](std::uint32_t lower, HalfEdge) { ++ends[lower]; });
     std::uint32_t end = 0;
     for (std::uint32_t& offset : ends) {
@@ -181,8 +180,8 @@ std::vector<std::uint32_t> find_open_vertices(std::span<const Triangle> faces, s
 std::vector<std::uint32_t> join_near_vertices(std::span<const Vec3f> vertices,
                                               std::span<const std::uint32_t> open, double width) {
     const Grid grid(width);
-    std::unordered_map<Grid::Cell, std::uint32_t, HashOfCell>
-        last_in_cell; // of the vertices that represent themselves
+    // The last vertex in each cell that represents itself.
+    std::unordered_map<Grid::Cell, std::uint32_t, HashOfCell> last_in_cell;
     std::vector<std::uint32_t> next(open.size(), kNoEdge), result(open.begin(), open.end());
     for (std::uint32_t i = 0; i < open.size(); ++i) {
         const Vec3d place(vertices[open[i]]);

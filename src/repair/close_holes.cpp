@@ -53,9 +53,8 @@ class MissingHalfEdges {
 
   private:
     std::vector<std::uint32_t> ends_; ///< ends of half edges, grouped by their start
-    std::vector<std::size_t>
-        taken_; ///< [vertex_count + 1] index in ends_ of each vertex's first half edge that is not yet taken
-    std::vector<std::size_t> end_; ///< [vertex_count] index in ends_ after each vertex's last half edge
+    std::vector<std::size_t> taken_;  ///< [vertex_count + 1] in ends_, each vertex's first one not yet taken
+    std::vector<std::size_t> end_;    ///< [vertex_count] index in ends_ after each vertex's last half edge
 };
 
 /// The edges along which more faces run in one direction than in the other, as loops. They always form loops,

@@ -25,8 +25,7 @@ class Sides {
 
     Sides(const TriangleMesh& mesh, const ExactMap& map) : mesh_(mesh), map_(map) {}
 
-    /// For each of the faces (of this mesh), is the point behind it, or in front of it, at one of the places
-    /// inside the solid?
+    /// [faces.size()] Is the solid on the given side of each face (of this mesh) at this place?
     std::vector<std::uint8_t> are_inside(const Faces& faces, std::size_t place, bool behind) const {
         std::vector<Vec3f> points;
         points.reserve(faces.size());

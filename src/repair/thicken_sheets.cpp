@@ -32,8 +32,8 @@ void require_suitable(const TriangleMesh& mesh, double thickness) {
         farthest =
             std::max({farthest, std::fabs(double{p.x}), std::fabs(double{p.y}), std::fabs(double{p.z})});
     const double radius = smallest_enclosing_sphere(positions).radius;
-    const double least =
-        std::max(radius * 0x1p-15, farthest * 0x1p-20); // 16 lattice steps of a map or steps of float
+    // 16 steps of a map's lattice or of float.
+    const double least = std::max(radius * 0x1p-15, farthest * 0x1p-20);
     if (thickness >= least && thickness <= radius) return;
     throw Error(ErrorCode::InvalidOptions,
                 "sheets cannot be given the thickness " + number_text(thickness) +

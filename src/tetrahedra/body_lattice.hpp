@@ -27,7 +27,7 @@ class BodyLattice {
     /// Makes a lattice around a box: the vertices of its hull are more than half an edge outside the box.
     BodyLattice(const Vec3d& low, const Vec3d& high, double size);
 
-    /// The number of vertices that such a lattice would have, which may be too large for numbering them.
+    /// The number of vertices that such a lattice would have, to be checked before it is made.
     static double vertex_count_around(const Vec3d& low, const Vec3d& high, double size);
 
     double size() const { return size_; }

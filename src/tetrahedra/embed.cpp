@@ -75,8 +75,7 @@ std::uint32_t TetrahedronTree::nearest(const Vec3d& point) const {
 
 void TetrahedronTree::search(std::uint32_t number, const Vec3d& point, Nearest& nearest) const {
     const BoxTree::Node& node = tree_.node(number);
-    if (node.box.distance(point) > nearest.distance)
-        return; // an equally near node may contain a tetrahedron with a smaller number
+    if (node.box.distance(point) > nearest.distance) return; // an equal one may have a smaller number
     if (node.is_leaf()) {
         for (std::uint32_t i = node.begin; i < node.end; ++i) {
             const std::uint32_t tetrahedron = tree_.leaf(i).item;

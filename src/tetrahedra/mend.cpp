@@ -113,8 +113,7 @@ std::vector<std::uint32_t> to_remove(const TetrahedralMesh& mesh, const Pinch& p
             const auto [other, is_new] = seen.emplace(face, i);
             if (!is_new) parts.join(other->second, i);
         }
-    std::vector<double> volumes(
-        around.size()); // the volume of each part, at the index of its smallest member
+    std::vector<double> volumes(around.size()); // the volume of each part, at its smallest member
     for (std::uint32_t i = 0; i < around.size(); ++i)
         volumes[parts.find(i)] += tetrahedron_volume(mesh, around[i]);
     const auto largest =

@@ -14,7 +14,7 @@ namespace echinus {
 
 namespace {
 
-/// The vertices of a mesh, sorted by the sample of the grid that is nearest to them.
+/// The vertices of a mesh, grouped by the sample of the grid that is nearest to them.
 class VertexBins {
   public:
     VertexBins(const LatticeMesh& lattice, const SphericalGrid& grid)

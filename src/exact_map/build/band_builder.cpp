@@ -43,8 +43,7 @@ void BandList::clear() {
 }
 
 void BandList::make_room(std::size_t interval_count, std::size_t cell_count) {
-    const std::size_t reference_count =
-        interval_count + interval_count / 2; // some references are listed twice
+    const std::size_t reference_count = interval_count + interval_count / 2; // some are listed twice
     const std::size_t band_count = 4 * cell_count;
     band_counts.room_for(cell_count);
     bands.room_for(band_count);
@@ -202,12 +201,11 @@ void BandBuilder::append_open(std::uint32_t cell) {
         }
         lower = band.upper;
     }
-    constexpr double kBeyondOtherRays =
-        1.05; // other rays of the cell may reach the sphere at a larger norm than the middle one
+    // Other rays of the cell may reach the sphere at a larger norm than the middle one.
+    constexpr double kBeyondOtherRays = 1.05;
     const auto end = truncated_to<std::uint16_t>(kBeyondOtherRays * whole / ExactMapView::kBandUnit);
     const std::uint16_t limit = std::max(end, lower);
-    append_limit(limit, limit,
-                 append_gap(cell, lower, limit, 0)); // the space beyond the limit was not examined
+    append_limit(limit, limit, append_gap(cell, lower, limit, 0)); // nothing was examined beyond it
     result_.volumes.push_back({uncertain_, whole * whole * whole});
 }
 
@@ -216,8 +214,7 @@ std::int16_t BandBuilder::append_gap(std::uint32_t cell, std::uint16_t lower, st
                                      int crossings) {
     pieces_.clear();
     gap_states_->append_pieces(cell, {lower, upper, crossings}, pieces_);
-    if (pieces_.empty())
-        return ExactMapView::kUncertain; // a gap that contains no lattice point of the middle ray
+    if (pieces_.empty()) return ExactMapView::kUncertain; // a gap without lattice points on the ray
     const double whole = l1_at_sphere(cell);
     std::uint16_t piece_lower = lower;
     for (const GapPiece& piece : pieces_) {

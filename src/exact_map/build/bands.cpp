@@ -133,8 +133,7 @@ void BandFinder::copy(const Block& block, Bands& result) const {
         result.offsets[block.first_cell + i] = offset;
         offset += list.band_counts[block.first_count + i];
     }
-    const auto moved =
-        static_cast<std::uint32_t>(block.to_reference - block.first_reference); // computed modulo 2^32
+    const auto moved = static_cast<std::uint32_t>(block.to_reference - block.first_reference); // modulo 2^32
     for (std::size_t i = 0; i < block.band_count; ++i) {
         const Band& band = list.bands[block.first_band + i];
         result.bands[block.to_band + i] = {band.lower, band.upper, band.first_reference + moved};

@@ -91,8 +91,7 @@ class BandFinder {
     struct Block {
         std::size_t worker;
         std::size_t first_cell, cell_count;
-        std::size_t
-            first_count; ///< index into BandList::band_counts; further indices into the list's arrays:
+        std::size_t first_count; ///< index into BandList::band_counts; more indices into the list's arrays:
         std::size_t first_band, band_count, first_reference, reference_count, first_volume;
         std::size_t to_band, to_reference;
     };

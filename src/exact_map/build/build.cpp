@@ -100,8 +100,7 @@ std::string size_text(std::size_t byte_count) {
 std::uint64_t hash_of(std::span<const Vec3f> vertices, std::span<const Triangle> faces, const Vec3d& origin,
                       const ExactMapOptions& options, bool is_closed) {
     constexpr std::uint64_t kWithoutCertainGaps = std::uint64_t{1} << 32;
-    const bool finds_gaps =
-        options.find_certain_gaps || is_closed; // in a closed surface all gaps are certain
+    const bool finds_gaps = options.find_certain_gaps || is_closed; // a closed surface has no others
     const std::array<std::uint64_t, 4> fields{options.divisions | (finds_gaps ? 0 : kWithoutCertainGaps),
                                               options.byte_budget, static_cast<std::uint64_t>(options.rule),
                                               static_cast<std::uint64_t>(options.centre)};
@@ -181,7 +180,7 @@ ExactMapStatistics statistics_of(std::size_t face_count, std::size_t dropped_fac
 /// the faces alone, the order of the tree, which changes little, and memory.
 class MapMaker {
   public:
-    /// @param faces  must stay in place
+    /// @param faces  must not move in memory
     /// @param origin  the origin of the frame of all vertices
     MapMaker(std::span<const Triangle> faces, const ExactMapOptions& options, const Vec3d& origin = {})
         : faces_(faces), origin_(origin), options_(options), snapper_(faces) {}
@@ -323,8 +322,7 @@ std::uint32_t MapMaker::set_bands_within(const ByteRange& bytes, std::uint32_t m
 }
 
 ExactMap MapMaker::make(std::span<const Vec3f> vertices) {
-    if (arrays_.use_count() != 1)
-        arrays_ = std::make_shared<OwnedArrays>(); // the old arrays are still in use
+    if (arrays_.use_count() != 1) arrays_ = std::make_shared<OwnedArrays>(); // it is still in use
     snap(vertices);
     set_surface(vertices);
     const std::uint32_t divisions = set_bands();

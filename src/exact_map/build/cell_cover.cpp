@@ -393,8 +393,7 @@ class OctantCover {
     std::size_t first_count_ = 0, last_count_ = 0;
     Affine reciprocal_;
     double reciprocal_error_;
-    std::array<double, kNoPart + 1> part_lows_,
-        part_highs_; ///< extremes of the reciprocal over parts, as in range_over()
+    std::array<double, kNoPart + 1> part_lows_, part_highs_; ///< extremes over parts, as in range_over()
 };
 
 /// Closer to the origin than this many lattice steps, the directions of cut corners cannot be distinguished

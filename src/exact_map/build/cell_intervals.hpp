@@ -93,8 +93,7 @@ class CellIntervals {
     struct Worker {
         std::vector<CellCover> covers;
         Arena<Interval> found;
-        std::vector<std::uint32_t>
-            next; ///< [cell_count] first the number of intervals per cell, then the index of the next
+        std::vector<std::uint32_t> next; ///< [cell_count] number of intervals; later, index of the next one
     };
 
     void cover_all_faces(const LatticeMesh& lattice, const OctahedralCells& cells, const Octants& octants,
@@ -102,8 +101,7 @@ class CellIntervals {
     void find_octants_met(const LatticeMesh& lattice, unsigned thread_count);
     void set_offsets();
 
-    Arena<std::uint8_t>
-        octants_met_; ///< [face_count] octants met by each face; unused if all octants are processed together
+    Arena<std::uint8_t> octants_met_; ///< [face_count] of each face; unused if all octants are searched
     std::uint32_t first_cell_ = 0;
     std::vector<Worker> workers_;
     Arena<Interval> by_cell_;

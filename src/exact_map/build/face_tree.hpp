@@ -14,7 +14,7 @@ namespace echinus {
 
 /// A face as the tree sorts it. Items themselves are moved, so that comparisons need no look-up.
 struct TreeItem {
-    std::array<std::uint32_t, 3> place; ///< any measure of where the face is
+    std::array<std::uint32_t, 3> place; ///< any measure of the position of the face
     std::uint32_t face;
 };
 static_assert(sizeof(TreeItem) == 16);

@@ -15,9 +15,8 @@ namespace echinus {
 namespace {
 
 constexpr int kUnit = ExactMapView::kBandUnit;
-constexpr double kTolerance = 1e-3; ///< error of winding numbers
-constexpr double kMostChange =
-    0.5 - kCertainMargin - kTolerance; ///< the largest change within a region that counts as certain
+constexpr double kTolerance = 1e-3;                               ///< error of winding numbers
+constexpr double kMostChange = 0.5 - kCertainMargin - kTolerance; ///< within a region that is certain
 
 double distance_to_segment(const Vec3d& place, const Vec3d& a, const Vec3d& b) {
     const Vec3d ab = b - a;
@@ -181,8 +180,8 @@ void GapStates::append_halves(std::uint32_t cell, const Gap& gap, int depth,
 
 bool GapStates::certain_in_band(std::uint32_t cell, const Gap& below, std::int32_t upper) const {
     if (max_depth_ == kNone) return false;
-    const double norm = kUnit * below.upper - 0.5 -
-                        1.5 * cells_.divisions(); // rounds to the last lattice point before the band
+    const double norm =
+        kUnit * below.upper - 0.5 - 1.5 * cells_.divisions(); // rounds to the last point before the band
     const Region region(cells_, cell, below.upper, upper, norm);
     return winding_in(region, below) != ExactMapView::kUncertain;
 }

@@ -180,10 +180,9 @@ namespace {
 /// Moments of some faces about their area-weighted centre.
 struct Moments {
     Vec3d centre;
-    Vec3d area;                   ///< sum of the area vectors
-    std::array<Vec3d, 3> first{}; ///< integral of the area vector times the offset along each axis
-    std::array<Vec3d, 6>
-        second{}; ///< integral of the area vector times products of two offsets: xx, yy, zz, xy, xz, yz
+    Vec3d area;                    ///< sum of the area vectors
+    std::array<Vec3d, 3> first{};  ///< integral of the area vector times the offset along each axis
+    std::array<Vec3d, 6> second{}; ///< integral of area vector times two offsets: xx, yy, zz, xy, xz, yz
     double total_area = 0, spread = 0, radius = 0;
     AlignedBox<double> box;
 };

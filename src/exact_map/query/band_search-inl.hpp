@@ -193,9 +193,8 @@ class BandSearch {
   public:
     explicit BandSearch(const ExactMapView& map) : map_(map) {}
 
-    BandGroup in_bands; ///< the particles in bands, with their bands
-    std::size_t outermost_count =
-        0;             ///< the first so many of in_bands are in the outermost band of their cell
+    BandGroup in_bands;              ///< the particles in bands, with their bands
+    std::size_t outermost_count = 0; ///< this many of in_bands, the first, are in outermost bands of cells
     BandGroup in_gaps; ///< particles in gaps, with the band beyond the gap; without those beyond all bands
     /// The slots of particles that may be in a gap or a band, some perhaps twice; for an open surface also of
     /// those beyond all bands.

@@ -438,8 +438,7 @@ class BandWindings {
     std::array<std::int32_t, BandGroup::kCapacity> windings_;
     std::array<Sum, BandGroup::kCapacity> sums_;
     std::size_t pair_count_ = 0;
-    alignas(64)
-        std::array<std::int32_t, kPairCapacity + kMargin> pair_corners_; ///< the first corner of each face
+    alignas(64) std::array<std::int32_t, kPairCapacity + kMargin> pair_corners_; ///< each face's first corner
     alignas(64) std::array<std::int32_t, kPairCapacity + kMargin> pair_particles_; ///< the particle's number,
                                                                                    ///< with kBefore if set
     alignas(64) std::array<std::uint8_t, kPairCapacity + kMargin> raised_crossings_; ///< crossing_on() + 1

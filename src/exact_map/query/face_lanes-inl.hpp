@@ -153,7 +153,7 @@ class LeafLanes {
             hn::Add(hn::Add(l1_norm(a), l1_norm(b)), hn::Add(l1_norm(c), hn::Set(d, reach)));
         const FaceLanes error_sq = hn::Mul(hn::Mul(scale, scale), hn::Set(d, 0x1p-23F));
         constexpr float kThin = 1024; // limit of q^2 beyond which the plane is not used
-        const FaceLanes sides_sq = // the product of the two longest sides, which meet at the sharpest corner
+        const FaceLanes sides_sq =    // squared product of the two longest; they meet at the sharpest corner
             hn::Max(hn::Max(hn::Mul(ab_sq, bc_sq), hn::Mul(bc_sq, ca_sq)), hn::Mul(ca_sq, ab_sq));
         const auto has_plane = hn::Lt(sides_sq, hn::Mul(normal_sq, hn::Set(d, kThin)));
         const FaceLanes q_sq = hn::Mul(sides_sq, inverse(normal_sq));

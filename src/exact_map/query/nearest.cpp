@@ -158,7 +158,7 @@ float bound_above(double value) {
     return static_cast<float>(std::min(value, 1e37)) * (1 + 1e-6F);
 }
 
-/// The outward unit normal of the front of the stretched face; 0 for a face without area.
+/// The unit normal of the stretched face, pointing out of its front; 0 for a face without area.
 Vec3d unit_normal(const ExactMapView& map, std::uint32_t face, const Vec3d& place, const Vec3d& stretch) {
     const Corners corners = corners_around(map, face, place, stretch);
     const Vec3d normal = cross(corners[1] - corners[0], corners[2] - corners[0]);

@@ -242,8 +242,7 @@ class NearestFaceFinder {
     const ExactMapView& map_;
     Vec3d stretch_;
     Vec3f stretch_float_;
-    std::uint32_t last_leaf_ =
-        kNoFace; ///< first face of the leaf in which the last places found their nearest
+    std::uint32_t last_leaf_ = kNoFace; ///< first face of the leaf with the nearest faces of the last places
 
     Vec3<std::int32_t> origin_; ///< on the lattice, near all places
     float reach_ = 0;           ///< no place's L1 distance from it is larger

@@ -210,7 +210,7 @@ class NearMeasure {
         const EightPoints ab = b - a, bc = c - b, ca = a - c, normal = fused_cross(ab, bc);
         const EightLanes ab_sq = fused_dot(ab, ab), bc_sq = fused_dot(bc, bc), ca_sq = fused_dot(ca, ca);
         const EightLanes normal_sq = fused_dot(normal, normal), normal_inverse = inverse(normal_sq);
-        const EightLanes sides_sq = // the product of the two longest sides, which meet at the sharpest corner
+        const EightLanes sides_sq = // squared product of the two longest; they meet at the sharpest corner
             hn::Max(hn::Max(hn::Mul(ab_sq, bc_sq), hn::Mul(bc_sq, ca_sq)), hn::Mul(ca_sq, ab_sq));
         const auto has_plane = hn::Lt(sides_sq, hn::Mul(normal_sq, eight(kThin)));
         const EightLanes past_ab = fused_dot(a, fused_cross(ab, normal));
@@ -244,8 +244,7 @@ class NearMeasure {
     Vec3f stretch_, offset_;    ///< stretch; the place relative to the origin
     Vec3f above_, below_;       ///< slightly more and slightly less than the place; in the unit of boxes
     Vec3f per_unit_;            ///< the stretched unit of boxes, in lattice steps
-    Vec3<std::int32_t> reach_low_,
-        reach_high_; ///< the box around everything within reach, in the unit of boxes
+    Vec3<std::int32_t> reach_low_, reach_high_; ///< box around all within reach, in the unit of boxes
 };
 
 /// Measures from a distant place by the excess that nearest.cpp explains. On a triangle it is least at a
@@ -591,8 +590,7 @@ class OnePlaceSearch {
     std::size_t node_count_ = 0;
     std::array<std::uint32_t, kMaxDepth * kWidth + kWidth> nodes_;
     Leaves leaves_;
-    std::uint32_t first_leaf_ = kNoLeaf,
-                  second_leaf_ = kNoLeaf; ///< leaves already visited, numbered as children
+    std::uint32_t first_leaf_ = kNoLeaf, second_leaf_ = kNoLeaf; ///< visited before; numbered as children
 };
 
 } // namespace echinus::HWY_NAMESPACE

@@ -108,8 +108,7 @@ class CrossingFilter {
     static constexpr double kAreaError = 0x1p-9;
     static constexpr double kVolumeError = 0x1p14;
 
-    static constexpr std::array<std::uint32_t, 4> kNext{
-        1, 2, 0, 1}; ///< the two axes that follow axis k cyclically are kNext[k] and kNext[k + 1]
+    static constexpr std::array<std::uint32_t, 4> kNext{1, 2, 0, 1}; ///< axis k is followed by these two
 
     std::uint32_t u_axis_, v_axis_, k_axis_;
     double u_per_k_, v_per_k_, pk_, length_;

@@ -190,7 +190,7 @@ SideAndLeaf find_side(const ExactMapView& map, const LatticeFrame& frame, const 
 void find_sides(const ExactMapView& map, const StridedSpan<const Vec3f>& points_local,
                 std::span<Side> sides) noexcept {
     assert(points_local.size() == sides.size());
-    constexpr std::size_t kMinKernelBatch = 8; // one vector takes as long as so many, a vector for each
+    constexpr std::size_t kMinKernelBatch = 8; // a full vector takes as long as this many single queries
     if (!use_kernels())
         find_sides_one_by_one(map, points_local, sides);
     else if (sides.size() < kMinKernelBatch)

@@ -49,10 +49,9 @@ Vec3f rounded_up(const Vec3d& v) {
 /// A triangle in lattice steps, and the box around it.
 struct PlacedTriangle {
     TriangleCorners corners;
-    Vec3f low, high; ///< limits of the box, rounded outwards
-    double rounding; ///< see rounding_of()
-    std::optional<NearTriangle>
-        near; ///< for kernels; none if they are off, or the triangle is far away or large
+    Vec3f low, high;                  ///< limits of the box, rounded outwards
+    double rounding;                  ///< see rounding_of()
+    std::optional<NearTriangle> near; ///< for kernels; none if these are off or it is far away or large
 
     PlacedTriangle(const LatticeFrame& frame, const TrianglePoints& points)
         : PlacedTriangle(TriangleCorners{frame.to_lattice(points[0]), frame.to_lattice(points[1]),

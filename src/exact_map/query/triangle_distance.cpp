@@ -90,8 +90,7 @@ TriangleGap careful_gap(const TriangleCorners& a, const TriangleCorners& b) {
         for (std::size_t j = 0; j < 3; ++j) {
             const Vec3d u = a[(i + 1) % 3] - a[i], v = b[(j + 1) % 3] - b[j];
             try_both(cross(u, v));
-            try_both(
-                cross(cross(u, b[j] - a[i]), u)); // perpendicular to the edge of a, towards the corner of b
+            try_both(cross(cross(u, b[j] - a[i]), u)); // perpendicular to the edge of a, towards b's corner
             try_both(cross(cross(v, a[i] - b[j]), v));
             try_both(b[j] - a[i]);
         }

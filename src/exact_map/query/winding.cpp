@@ -62,8 +62,8 @@ double cone_solid_angle(const LatticePoint& a, const LatticePoint& b, const Latt
     return positive ? angle : -angle;
 }
 
-/// What the border contributes to the generalised winding number in addition to the signed crossings beyond
-/// share * d. A point on the cone counts as displaced by (e, e^2, e^3), as everywhere.
+/// The contribution of the border to the generalised winding number, in addition to the signed crossings
+/// beyond share * d. A point on the cone counts as displaced by (e, e^2, e^3), as everywhere.
 double border_part(std::span<const BorderEdge> border, std::span<const Vec3<std::int32_t>> vertices,
                    const LatticePoint& d, double share = 1) {
     double sum = 0;

@@ -20,8 +20,7 @@ struct Winding {
     std::int64_t number = 0; ///< for an open surface, the generalised winding number, rounded
     bool certain = true; ///< whether the number is at least kCertainMargin away from the values at which the
                          ///< answer changes
-    bool computed =
-        false; ///< whether it was computed for this place, as is mostly necessary for an open surface
+    bool computed = false; ///< whether it was computed for this place, as is usual for an open surface
 };
 
 /// Is a place, in lattice steps, rounded to a point of the lattice?

@@ -103,8 +103,7 @@ class TreeSum {
           kept_error_(kept_error) {}
 
     WindingSum operator()(const WindingGoal& goal) {
-        constexpr double kWorthALook =
-            0.5 - kCertainMargin; // far from all turning points if these are one apart
+        constexpr double kWorthALook = 0.5 - kCertainMargin; // far from all turns if they are one apart
         double needed = std::min(goal.tolerance, kWorthALook);
         add(0);
         while (true) {
