@@ -221,13 +221,13 @@ void add_exact_options(Command command, BuildArguments& arguments) {
             .add_byte_count(
                 "--budget", arguments.exact.byte_budget,
                 "Largest size of the map, such as 300KB (units B, KB, MB, GB, KiB, MiB, GiB): the map gets "
-                "as many cells as fit. By default, without --cells-per-octant, 512 B per face plus "
+                "as many cells as fit. The default, without --cells-per-octant, is 512 B per face plus "
                 "64 KiB")
             .excludes("--cells-per-octant"),
         add_choice<InsideRule>(
             command, "--rule", arguments.exact.rule,
             {{"nonzero", InsideRule::Nonzero}, {"parity", InsideRule::Parity}},
-            "Which points are inside where parts of the mesh overlap: those with a winding "
+            "The points that count as inside where parts of the mesh overlap: those with a winding "
             "number other than 0, or those with an odd one")};
 }
 
@@ -286,20 +286,19 @@ void add_options(Command command, BuildArguments& arguments) {
     add_choice<CentreChoice>(
         command, "--centre", arguments.centre,
         {{"sphere", CentreChoice::BoundingSphere}, {"search", CentreChoice::Search}},
-        "Origin of the rays: the centre of the bounding sphere, or the point with the fewest expected "
+        "Origin of the rays: the centre of the bounding sphere, or the point with the fewest expected face "
         "tests (exact map) or wrong answers (distance map)");
-    command.add("--threads", &arguments.thread_count, "Threads to build on; 0: all cores")
+    command.add("--threads", &arguments.thread_count, "Threads that build the map; 0: all cores")
         .range(0, 1024)
         .type_name("COUNT")
         .show_default();
-    command.add_flag(
-        "--repair", arguments.repair.repair,
-        "First make the repairs that need no guess: close seams, drop duplicate faces, doubled patches "
-        "and loose slivers, flip faces and inside-out parts");
+    command.add_flag("--repair", arguments.repair.repair,
+                     "First make the repairs that require no guesswork: close seams, drop duplicate faces, "
+                     "doubled patches and loose slivers, flip faces and inside-out parts");
     add_solid_options(command, arguments.repair);
     command.add_flag("--allow-open", arguments.allow_open,
                      "Accept a mesh that is not closed: near its holes the answers of an exact map are "
-                     "not certain, and behind them those of a distance map are wrong");
+                     "not certain, and behind its holes those of a distance map are wrong");
     arguments.mesh.add_format_option(command);
     command.add_flag("--json", arguments.json, "Print one JSON object");
     add_exact_options(command.add_group("Exact maps"), arguments);

@@ -244,19 +244,20 @@ void run(const CheckArguments& arguments) {
 } // namespace
 
 void add_check_command(Command program) {
-    Command command =
-        program.add_command("check", "Find which faces of meshes intersect, where, and how deep");
+    Command command = program.add_command(
+        "check",
+        "Find the faces of meshes that intersect, their curves, and how deep meshes are in each other");
     const auto arguments = std::make_shared<CheckArguments>();
     command.add("MESH", &arguments->paths, "Mesh files (OBJ, PLY, STL, OFF, glTF, GLB, 3DS), or -")
         .required()
         .type_name("...");
     command
         .add("--pairs", &arguments->target,
-             "Write all meshes as a .ply, intersecting faces red and the curves as edges; - for standard "
-             "output")
+             "Write all meshes as one .ply, with intersecting faces in red and the curves as edges; - for "
+             "standard output")
         .ends_in(".ply")
         .type_name("PLY");
-    command.add("--threads", &arguments->thread_count, "Threads; 0: all cores")
+    command.add("--threads", &arguments->thread_count, "Threads to use; 0: all cores")
         .range(0, 1024)
         .type_name("COUNT")
         .show_default();

@@ -172,7 +172,7 @@ void add_own_rows(Table& table, const ExactMap& map) {
     table.add("certain",
               view.border.empty()
                   ? "everywhere, since the surface is closed on the lattice"
-                  : fmt::format("{:.3f} % of the bounding sphere; uncertain places are in {:.3f} % of the "
+                  : fmt::format("{:.3f} % of the bounding sphere; uncertain answers occur in {:.3f} % of the "
                                 "directions; {} border edges",
                                 statistics.certain_share * 100, statistics.uncertain_directions * 100,
                                 view.border.size()));
@@ -216,8 +216,8 @@ std::string text_about(const MapDescription& description, const std::string& tit
     const auto build_ms = description.notes.build_milliseconds;
     Table table(title);
     table.add("kind", fmt::format("{} map", name_of(map)));
-    table.add("faces of the mesh", fmt::format("{} ({} too small to count)", map.statistics().face_count,
-                                               map.statistics().dropped_faces));
+    table.add("faces of the mesh", fmt::format("{} ({} too small for the lattice)",
+                                               map.statistics().face_count, map.statistics().dropped_faces));
     const bool has_origin = view.origin != Vec3d{};
     table.add("bounding sphere", has_origin
                                      ? fmt::format("centre {}, radius {}",

@@ -69,7 +69,7 @@ void add_sphere(Command mesh) {
     sphere.add("--radius", &options->radius, "Distance of the vertices from the centre").show_default();
     sphere
         .add_numbers("--segments", 'x', {&options->meridians, &options->parallels},
-                     "Meridians x rows of faces from pole to pole")
+                     "Numbers of meridians and of rows of faces from pole to pole")
         .type_name("COUNTxCOUNT")
         .default_text("60x30");
     sphere.action([options] {
@@ -91,7 +91,7 @@ void add_box(Command mesh) {
                     "Lengths along x, y and z")
         .type_name("LENGTHxLENGTHxLENGTH")
         .default_text("1x1x1");
-    box.add("--segments", &options->segments, "Squares along each edge of a side").show_default();
+    box.add("--segments", &options->segments, "Number of squares along each edge of a side").show_default();
     box.action([options] { write_result(options->target, make_box(options->size, options->segments)); });
 }
 
@@ -123,7 +123,7 @@ void mend(Mending arguments) {
 
 void add_repair(Command mesh) {
     auto arguments = std::make_shared<Mending>();
-    Command command = mesh.add_command("repair", "Write a repaired mesh, made solid on request");
+    Command command = mesh.add_command("repair", "Repair a mesh and, on request, make it solid");
     command.add("MESH", &arguments->mesh.path, "Mesh file (OBJ, PLY, STL, OFF, glTF, GLB, 3DS), or -")
         .required()
         .type_name("");

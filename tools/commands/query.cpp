@@ -167,7 +167,7 @@ void add_query_command(Command program) {
         "query", "Query a map for points: inside or outside, depth, nearest surface point");
     const auto arguments = std::make_shared<QueryArguments>();
     command.add("MAP", &arguments->map, "Map file, or -").required().type_name("");
-    command.add("POINTS", &arguments->points, "Points [n, 3] as .npy or lines x,y,z as .csv, or -")
+    command.add("POINTS", &arguments->points, "Points: an array [n, 3] as .npy, or lines x,y,z as .csv, or -")
         .required()
         .type_name("");
     command.add("-o,--output", &arguments->target, "Answers to write, .npy or .csv, or -")
@@ -176,14 +176,14 @@ void add_query_command(Command program) {
     command
         .add("--margin", &arguments->margin,
              "Points outside also get a contact if they are at most this far from the surface, in "
-             "the unit of the mesh; with a distance map measured along their ray from the centre")
+             "the unit of the mesh; with a distance map this is measured along their ray from the centre")
         .type_name("DISTANCE")
         .show_default();
     command.add_flag("--signed-distance", arguments->signed_distance,
                      "Add the signed distance of every point, negative inside (exact maps)");
     command.add_flag("--winding-number", arguments->winding_number,
-                     "Add the generalised winding number of every point, to 0.0001; not an integer for "
-                     "an open surface (exact maps)");
+                     "Add the generalised winding number of every point, accurate to 0.0001; it is not an "
+                     "integer for an open surface (exact maps)");
     command.add_flag("--json", arguments->json, "Print one JSON object");
     command.footer("Example:\n  echinus query torus.ech points.npy -o answers.npy");
     command.action([arguments] { query(*arguments); });

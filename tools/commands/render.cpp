@@ -49,7 +49,7 @@ void PictureArguments::add_options(Command command, std::uint32_t width, std::ui
     add_count("--height", options.height, "Pixels", kLeastSide, RenderOptions::kMaxSide);
     add_count("--samples", options.samples, "Rays per pixel: more rays take longer and reduce noise", 1,
               RenderOptions::kMaxSampleCount);
-    add_count("--threads", options.thread_count, "Threads; 0: all cores", 0, 1024);
+    add_count("--threads", options.thread_count, "Threads to use; 0: all cores", 0, 1024);
     command
         .add_numbers("--view", ',', {&view.azimuth_deg, &view.elevation_deg},
                      "Direction of the camera in degrees: azimuth, counter-clockwise seen from above, and "
@@ -165,10 +165,11 @@ void render_map(const MapPicture& arguments) {
 void add_map_picture(Command program) {
     const auto arguments = std::make_shared<MapPicture>();
     Command command = program.add_command(
-        "map", "A map next to its model: the faces of an exact map, coloured by how many faces a query "
-               "there may have to test, or the surface reconstructed from a distance map, layer by layer");
+        "map",
+        "A map next to its model: the faces of an exact map, coloured by the number of faces that "
+        "a query there may have to test, or the surface reconstructed from a distance map, layer by layer");
     command.add("MAP", &arguments->map, "Map file, made by echinus build, or -").required().type_name("");
-    command.add("MESH", &arguments->mesh.path, "The mesh from which it was built, or -")
+    command.add("MESH", &arguments->mesh.path, "The mesh from which the map was built, or -")
         .required()
         .type_name("");
     arguments->mesh.add_format_option(command);

@@ -292,9 +292,8 @@ void choose_collision(const SimulateArguments& arguments, Scene& scene) {
 /// Those that are held are the nearest to the scene's.
 void choose_particles(std::uint32_t particle_count, Scene& scene) {
     if (!scene.has_cloth || scene.mesh_cloth)
-        throw WrongUse(
-            "--particles",
-            "applies to a sheet, and the scene has none: another cloth has the particles of its mesh");
+        throw WrongUse("--particles", "applies only to a sheet, and the scene has none; a cloth made from a "
+                                      "mesh has the mesh's vertices");
     constexpr double kLeast = 2, kMost = 4096; // as in scenes
     ClothOptions& sheet = scene.cloth;
     const ClothOptions before = sheet;
@@ -442,7 +441,7 @@ void add_options(Command command, SimulateArguments& arguments) {
         .type_name("FILE");
     command
         .add("--player", &arguments.player,
-             "Player from which the page is made, as built by scripts/web; by default the installed one")
+             "Player from which the page is made, built by scripts/web; by default the installed one")
         .not_empty()
         .type_name("FILE");
     command

@@ -177,7 +177,7 @@ void add_tetrahedralize_command(Command program) {
         .range(1U, 100'000'000U)
         .type_name("NUMBER")
         .show_default();
-    command.add("--threads", &arguments->options.thread_count, "Threads; 0: all cores")
+    command.add("--threads", &arguments->options.thread_count, "Threads to use; 0: all cores")
         .range(0, 1024)
         .type_name("COUNT")
         .show_default();

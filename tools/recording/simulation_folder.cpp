@@ -82,7 +82,7 @@ std::vector<std::uint8_t> read_let_through(const ReportReader& reader, const jso
     for (const json& run : reader.list(collider, "lets_through")) {
         if (!run.is_array() || run.size() != 2 || !run[0].is_number_unsigned() ||
             !run[1].is_number_unsigned() || run[0] > run[1] || run[1] >= particle_count)
-            reader.fail("\"lets_through\" does not have the first and the last of particles");
+            reader.fail("\"lets_through\" does not consist of pairs of a first and a last particle");
         std::fill(passes.begin() + run[0].get<std::ptrdiff_t>(),
                   passes.begin() + run[1].get<std::ptrdiff_t>() + 1, std::uint8_t{1});
     }
