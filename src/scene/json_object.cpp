@@ -60,7 +60,7 @@ std::string expected_whole_number(Range range) {
 }
 
 std::string expected_array(std::size_t size, const std::string& element) {
-    return "an array of " + std::to_string(size) + ", each " + element;
+    return "an array of " + std::to_string(size) + " elements, each " + element;
 }
 
 bool within(double value, Range range) {
@@ -192,7 +192,7 @@ void JsonObject::read(const char* key, std::array<std::uint32_t, 2>& value, Rang
 void JsonObject::read(const char* key, std::vector<std::array<std::uint32_t, 2>>& value, Range range) {
     const json* found = find(key);
     if (found == nullptr) return;
-    const std::string expected = "an array of " + expected_array(2, expected_whole_number(range));
+    const std::string expected = "an array, each element " + expected_array(2, expected_whole_number(range));
     if (!found->is_array()) refuse(key, expected);
     value.resize(found->size());
     for (std::size_t i = 0; i < value.size(); ++i)
@@ -202,7 +202,7 @@ void JsonObject::read(const char* key, std::vector<std::array<std::uint32_t, 2>>
 void JsonObject::read(const char* key, std::vector<std::uint32_t>& value, Range range) {
     const json* found = find(key);
     if (found == nullptr) return;
-    const std::string expected = "an array, each " + expected_whole_number(range);
+    const std::string expected = "an array, each element " + expected_whole_number(range);
     if (!found->is_array()) refuse(key, expected);
     value.resize(found->size());
     for (std::size_t i = 0; i < value.size(); ++i) {

@@ -221,8 +221,7 @@ void read_scale(JsonObject& collider, Vec3d& scale) {
     collider.read("scale", scale, {-kLength.most, kLength.most});
     for (const double size : {scale.x, scale.y, scale.z})
         if (std::abs(size) < kLength.least)
-            collider.refuse("scale",
-                            "an array of 3, each a number from 1e-9 to 1e+09 or from -1e+09 to -1e-9");
+            collider.refuse("scale", "an array of 3 numbers, each from 1e-9 to 1e9 or from -1e9 to -1e-9");
 }
 
 /// Each with a time and a pose.

@@ -111,15 +111,17 @@ TEST(JsonObject, SaysWhatAValueMustBe) {
     expect("count is 2.5; it must be a whole number from 1 to 4000000000", [&] {
         object.read("count", count, {1, 4e9});
     });
-    expect("vector is [1,2]; it must be an array of 3, each a number from -1 to 9", [&] {
+    expect("vector is [1,2]; it must be an array of 3 elements, each a number from -1 to 9", [&] {
         object.read("vector", vector, {-1, 9});
     });
-    expect("pair is [1,99]; it must be an array of 2, each a whole number from 1 to 9", [&] {
+    expect("pair is [1,99]; it must be an array of 2 elements, each a whole number from 1 to 9", [&] {
         object.read("pair", pair, {1, 9});
     });
-    expect("pairs is [[1,2],3]; it must be an array of an array of 2, each a whole number from 0 to 9", [&] {
-        object.read("pairs", pairs, {0, 9});
-    });
+    expect("pairs is [[1,2],3]; it must be an array, each element an array of 2 elements, each a whole "
+           "number from 0 to 9",
+           [&] {
+               object.read("pairs", pairs, {0, 9});
+           });
     expect("word is \"green\"; it must be \"red\" or \"blue\"", [&] { object.read_word("word", colours); });
     expect("words is [\"red\",3]; it must be an array of \"red\" or \"blue\"",
            [&] { object.read_words("words", colours); });

@@ -310,7 +310,7 @@ TEST(SceneMeshCloth, RefusesTheKeysOfASheetAndTheOtherWayRound) {
                          R"("mesh": "s.obj", "particles": [9, 9])");
     expect_invalid_scene("cloth.scale is 2; it must be left out, or the cloth must have the key \"mesh\"",
                          R"("size": [1, 1], "scale": 2)");
-    expect_invalid_scene("cloth.pins is [[0,0]]; it must be an array, each a whole number",
+    expect_invalid_scene("cloth.pins is [[0,0]]; it must be an array, each element a whole number",
                          R"("mesh": "s.obj", "pins": [[0, 0]])");
     expect_invalid_scene("the key cloth.pins.to is missing",
                          R"("mesh": "s.obj", "pins": {"from": [0, 0, 0]})");

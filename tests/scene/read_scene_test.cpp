@@ -602,9 +602,8 @@ TEST(Scene, RefusesKeyframesThatMakeNoSense) {
         refusal(with_collider(R"({"keyframes": [{"time": 0}, {"time": 0}]})")),
         "a.json: collider.keyframes[1].time is 0; it must be later than that of the keyframe before it");
     EXPECT_EQ(refusal(with_collider(R"({"keyframes": [{"time": 0, "position": [0, 0]}]})")),
-              "a.json: collider.keyframes[0].position is [0,0]; it must be an array of 3, each a number from "
-              "-1e+09 "
-              "to 1e+09");
+              "a.json: collider.keyframes[0].position is [0,0]; it must be an array of 3 elements, each a "
+              "number from -1e+09 to 1e+09");
     EXPECT_EQ(refusal(with_collider(R"({"keyframes": [{"position": [0, 0, 0]}]})")),
               "a.json: the key collider.keyframes[0].time is missing");
     EXPECT_EQ(refusal(with_collider(R"({"keyframes": [{"time": 0, "rotation": [1, 1, 0, 0]}]})")),
