@@ -155,8 +155,9 @@ std::span<const std::uint32_t> SurfaceCollision::correct(std::span<Vec3f> positi
     require_option(seconds > 0 && std::isfinite(seconds),
                    "a step takes " + number_text(seconds) + " seconds; it must be a finite time above 0");
     require_option(positions.size() == count && (velocities.empty() || velocities.size() == count),
-                   "a step has " + std::to_string(positions.size()) + " positions and " +
-                       std::to_string(velocities.size()) + " velocities; it needs " + std::to_string(count));
+                   "a step was given " + std::to_string(positions.size()) + " positions and " +
+                       std::to_string(velocities.size()) + " velocities; it needs " + std::to_string(count) +
+                       " positions, and as many velocities or none");
     state_->send(positions);
     state_->simulation.step();
     state_->write_back(positions, velocities, seconds);
