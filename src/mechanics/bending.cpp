@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::uint32_t kIsMultiple = 1U << 31U;
 
-/// Of two directions from one point.
+/// The cotangent of the angle between two directions.
 double cotangent(const Vec3d& a, const Vec3d& b) {
     return dot(a, b) / length(cross(a, b));
 }
@@ -37,7 +37,8 @@ Angle angle_of(const std::array<Vec3d, 4>& corners) {
     Angle angle{};
     if (!(n1_sq > 0) || !(n2_sq > 0) || !(edge_length > 0)) return angle;
     angle.value = portable_atan2(dot(cross(n2, n1), edge) / edge_length, dot(n1, n2));
-    // Each corner turns its face about the edge by its height.
+    // Moving a corner along the normal of its face turns the face about the edge, by the displacement over
+    // the corner's height.
     const Vec3d by_c = n1 * (edge_length / n1_sq), by_d = n2 * (edge_length / n2_sq);
     const double c_along = dot(c - a, edge) / (edge_length * edge_length);
     const double d_along = dot(d - a, edge) / (edge_length * edge_length);
@@ -51,7 +52,7 @@ Angle angle_of(const ElasticHinge& hinge, Places places) {
     return angle_of({places[a], places[b], places[c], places[d]});
 }
 
-/// The difference of two angles, not a turn more.
+/// The difference between two angles, to within half a turn.
 double turned(double from, double to) {
     const double difference = to - from;
     return difference - 2 * std::numbers::pi * std::round(difference / (2 * std::numbers::pi));
@@ -70,9 +71,9 @@ void set_rest_shape(ElasticHinge& hinge, const std::array<Vec3d, 4>& rest, doubl
     const double area = (length(cross(b - a, c - a)) + length(cross(b - a, d - a))) / 2;
     hinge.weights = {static_cast<float>(b_c + b_d), static_cast<float>(a_c + a_d),
                      static_cast<float>(-a_c - b_c), static_cast<float>(-a_d - b_d)};
-    // Of a grid of right triangles that is bent along its rows, only every third edge folds. Bergou et al.
-    // give each edge a third of the area around it, and so three times this; then such a grid is three times
-    // too stiff.
+    // In a grid of right triangles that is bent along its rows, only every third edge folds. Bergou et al.
+    // assign a third of the area around it to each edge, and so use three times this stiffness, which would
+    // make such a grid three times too stiff.
     hinge.stiffness = static_cast<float>(bending_stiffness / area);
     hinge.edge_length = static_cast<float>(length(b - a));
 }
@@ -154,7 +155,7 @@ void Bending::begin_step(Places places, double step) {
     for (std::size_t h = 0; h < curved_.size(); ++h) angles_before_[h] = angle_of(curved_[h], places).value;
 }
 
-/// The row of the quadratic form, with damping, times the places.
+/// The product of a row of the quadratic form, with damping, and the positions.
 Vec3d Bending::curvature_force(std::size_t row, Places places) const {
     Vec3d sum;
     for (std::uint32_t e = flat_.first[row]; e < flat_.first[row + 1]; ++e)

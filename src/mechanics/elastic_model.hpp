@@ -14,7 +14,7 @@ namespace echinus {
 
 /// The material parts of a deformable.
 struct ElasticParts {
-    std::vector<Vec3d> rest_places; ///< [particle] for the coarse levels; those of a cut-out pattern, too
+    std::vector<Vec3d> rest_places; ///< [particle] for the coarse levels; may be those of a cut-out pattern
     std::vector<double> masses;     ///< [particle] positive
     std::vector<ElasticTriangle> triangles;
     std::vector<ElasticHinge> hinges;
@@ -34,7 +34,7 @@ class ElasticModel {
 
     void begin_step(Places places, double step);
     double energy(Places places, const Workers& workers) const;
-    /// The gradient and a positive semi-definite Hessian. @param hessian  or null
+    /// The gradient and a positive semi-definite Hessian. @param hessian  may be null
     void add_derivatives(Places places, std::span<Vec3d> gradient, BlockMatrix* hessian,
                          const Workers& workers) const;
 

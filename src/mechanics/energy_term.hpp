@@ -10,13 +10,12 @@
 
 namespace echinus {
 
-/// Where a step stands: places in double, since the residual of stiff material is a small difference of large
-/// forces.
+/// The positions of a step, in double, since the residual of stiff material is a small difference between
+/// large forces.
 using Places = std::span<const Vec3d>;
 
-/// The rows of the gradient and of the Hessian that one thread writes. An element that reaches over the
-/// border of two slabs is computed for both, and so each row sums its elements in their order whatever the
-/// threads.
+/// The rows of the gradient and of the Hessian that one thread writes. An element that extends into two slabs
+/// is computed for both, so each row sums its elements in their order for any number of threads.
 struct RowSlab {
     std::uint32_t begin = 0, end = 0;
     bool has(std::uint32_t row) const { return row >= begin && row < end; }
@@ -25,7 +24,7 @@ struct RowSlab {
 /// Elements by the slabs of rows that they write to.
 class SlabLists {
   public:
-    /// @param particles_of  (element) the range of particles that it couples
+    /// @param particles_of  (element) returns the range of particles that the element couples
     template <typename ParticlesOf>
     SlabLists(std::size_t row_count, std::size_t element_count, const ParticlesOf& particles_of)
         : row_count_(static_cast<std::uint32_t>(row_count)),
@@ -53,7 +52,7 @@ class SlabLists {
     std::vector<std::vector<std::uint32_t>> elements_;
 };
 
-/// The sum of what term(i) gives, by pieces that are summed in their order.
+/// The sum of term(i) over all i: each piece is summed separately, and the pieces are added in order.
 template <typename Term>
 double sum_of(std::size_t count, const Workers& workers, const Term& term) {
     constexpr std::size_t kPerPiece = 2048;

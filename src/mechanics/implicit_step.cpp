@@ -10,7 +10,7 @@ namespace echinus {
 
 namespace {
 
-/// Of BDF2: v = (x - from) / (2 h / 3) with from = (4 x0 - x00) / 3, and the same of the velocity.
+/// The step of BDF2: v = (x - from) / (2 h / 3) with from = (4 x0 - x00) / 3, and likewise for the velocity.
 constexpr double kSecondOrderStep = 2.0 / 3;
 
 } // namespace
@@ -24,7 +24,7 @@ ImplicitStep::ImplicitStep(const ElasticParts& parts)
 }
 
 void ImplicitStep::spread(std::span<std::uint8_t> marks) const {
-    // The first of a body has the smallest number.
+    // The first particle of a body has the smallest number.
     for (std::size_t i = 0; i < marks.size(); ++i)
         if (marks[i] != 0) marks[bodies()[i]] = 1;
     for (std::size_t i = 0; i < marks.size(); ++i) marks[i] = marks[bodies()[i]];
@@ -47,8 +47,8 @@ void ImplicitStep::begin(const Motion& motion, std::span<const Vec3d> accelerati
     total_inertia_ = 0;
     for (std::size_t i = 0; i < count; ++i) {
         const Vec3d place = motion.places[i], velocity = motion.velocities[i];
-        // The step in seconds that the velocity at its end has acted, and the places and velocities before
-        // it.
+        // The time in seconds for which the velocity at the end of the step acts, and the position and the
+        // velocity from which the step starts.
         double seconds = step;
         Vec3d from = place, velocity_from = velocity;
         if (motion.is_smooth[i] != 0) {
@@ -56,7 +56,7 @@ void ImplicitStep::begin(const Motion& motion, std::span<const Vec3d> accelerati
             from = (place * 4 - motion.places_before[i]) * (1.0 / 3);
             velocity_from = (velocity * 4 - motion.velocities_before[i]) * (1.0 / 3);
         }
-        // Drag pulls towards `from` as a spring of m * drag / seconds.
+        // Drag pulls towards `from` like a spring of stiffness m * drag / seconds.
         const double kept = 1 / (1 + drag * seconds);
         inertia_[i] = masses_[i] / (seconds * seconds * kept);
         if (is_held_[i] == 0) total_inertia_ += inertia_[i];
@@ -132,8 +132,7 @@ bool ImplicitStep::balance(std::span<Vec3d> places, const ContactEnergy& contact
     }
 }
 
-/// Takes the particles that are held out of the system: their rows and columns are those of a multiple of the
-/// identity.
+/// Removes held particles from the system: their rows and columns become those of a multiple of the identity.
 void ImplicitStep::hold(const Workers& workers) {
     workers.for_ranges(masses_.size(), kRowsPerPiece,
                        [&](std::size_t, std::size_t, std::size_t begin, std::size_t end) {
@@ -155,7 +154,7 @@ void ImplicitStep::hold(const Workers& workers) {
 }
 
 void ImplicitStep::calm(Places start, std::span<Vec3d> guess, const Workers& workers) {
-    // The motion of a whole body goes on.
+    // The common motion of each body is kept.
     const ScratchVector<Vec3d> common =
         common_displacements(start, guess, masses_, bodies(), is_held_, workers);
     for (std::size_t i = 0; i < guess.size(); ++i) trial_[i] = start[i] + common[bodies()[i]];
@@ -181,7 +180,7 @@ StepReport ImplicitStep::solve(std::span<Vec3d> places, const ContactEnergy* con
         translations_.correct(hessian_, right_side_, direction_, workers);
         ++report.newton_steps;
         const double share = search(places, energy, energy_at, report.halvings);
-        // The Hessian of the energy is nowhere less than that of inertia.
+        // The Hessian of the energy is nowhere smaller than that of inertia.
         report.last_move = share * std::sqrt(std::max(-slope(), 0.0) / total_inertia_);
         if (report.last_move < budget.tolerance) break;
     }
@@ -208,7 +207,7 @@ double ImplicitStep::search(std::span<Vec3d> places, double& energy, const Energ
         if (found <= energy + threshold::kSufficientDecrease * share * slope || is_rounding ||
             trial == threshold::kMostShorterTrials)
             break;
-        // The least of the parabola through both energies and the slope, within bounds.
+        // The minimum of the parabola through both energies with the slope at the start, within bounds.
         const double least = -slope * share * share / (2 * (found - energy - slope * share));
         share = std::min(share / 2, std::max(share / 10, least));
         ++halvings;

@@ -11,12 +11,13 @@
 
 namespace echinus {
 
-/// Where particles are and how they move. Of those that have a history, the last step's beginning, too.
+/// The positions and velocities of particles and, for those that have a history, also their values at the
+/// beginning of the last step.
 struct Motion {
     std::vector<Vec3d> places, velocities;
     std::vector<Vec3d> places_before, velocities_before;
-    /// 1 where what came before is smooth, so that the step is of second order (BDF2); 0 after an impact, or
-    /// where the host has set a velocity, where it is of first order (implicit Euler).
+    /// 1 if the previous motion is smooth, so that the step is of second order (BDF2); 0 after an impact, or
+    /// if the host has set a velocity: the step is then of first order (implicit Euler).
     std::vector<std::uint8_t> is_smooth;
 
     explicit Motion(std::size_t particle_count)
@@ -25,29 +26,30 @@ struct Motion {
     std::size_t particle_count() const { return places.size(); }
 };
 
-/// Energy beside the elastic one: of contacts, of friction.
+/// The energy in addition to the elastic one: that of contacts and friction.
 class ContactEnergy {
   public:
     virtual ~ContactEnergy() = default;
     virtual double energy(Places places, const Workers& workers) const = 0;
-    /// The gradient, and a positive semi-definite Hessian: added to the diagonal blocks of the matrix, to
-    /// others of its pattern, and to its contacts; null: the gradient alone.
+    /// The gradient and a positive semi-definite Hessian, which is added to the diagonal blocks of the
+    /// matrix, to other blocks of its pattern, and to its contacts. If `hessian` is null, only the gradient
+    /// is computed.
     virtual void add_derivatives(Places places, std::span<Vec3d> gradient, BlockMatrix* hessian,
                                  const Workers& workers) const = 0;
 };
 
-/// The bound of a step's cost. It ends earlier where it has converged.
+/// The limits of a step's cost. A step that has converged ends earlier.
 struct StepBudget {
     std::uint32_t newton_steps = 2;
-    std::uint32_t linear_iterations = 8; ///< at most, of each
-    double linear_tolerance = 1e-2;      ///< of the residual, relative
-    double tolerance = 1e-6; ///< a Newton step that moves particles less than this is the last, in the
-                             ///< root mean square that is possible by the energy it gains; length
+    std::uint32_t linear_iterations = 8; ///< the most for each Newton step
+    double linear_tolerance = 1e-2;      ///< relative to the residual
+    double tolerance = 1e-6; ///< length; the last Newton step is one that moves particles by less than this,
+                             ///< in the largest root mean square that its gain of energy permits
 };
 
 struct StepReport {
     std::uint32_t newton_steps = 0, linear_iterations = 0, halvings = 0;
-    double last_move = 0; ///< in the last Newton step, as the budget's tolerance
+    double last_move = 0; ///< of the last Newton step, measured like the tolerance of the budget
 };
 
 /// Steps of a deformable's motion: each finds a minimum of
@@ -59,62 +61,67 @@ class ImplicitStep {
   public:
     explicit ImplicitStep(const ElasticParts& parts);
 
-    /// Spreads marks over bodies: to all particles that the material connects with one that has it. The step
-    /// is to be of the same order for all of those, or what they do to each other would not balance.
+    /// Spreads marks over bodies, to all particles that the material connects with a marked one. The step has
+    /// to be of the same order for all particles of a body, or the forces between them would not balance.
     /// @param marks  [particle] 0 or 1
     void spread(std::span<std::uint8_t> marks) const;
-    /// Particles after those of a motion: the control points of rigid bodies.
+    /// Particles that follow those of a motion: the control points of rigid bodies.
     struct ControlPoints {
-        Places places, inertial; ///< where they are, and where inertia and outer forces lead them
+        Places places, inertial; ///< their positions, and those to which inertia and outer forces lead
     };
-    /// Where inertia leads: begins a step. @param accelerations  [particle] by outer forces
-    /// @param is_held  [particle] 1 for those that do not follow forces, but goals
+    /// Begins a step: computes where inertia leads.
+    /// @param accelerations  [particle] the accelerations by outer forces
+    /// @param is_held  [particle] 1 for those that follow goals instead of forces
     /// @param drag     the rate at which a velocity decays, 1/s
-    /// @param control_points  make a step of first order without drag
+    /// @param control_points  take a step of first order without drag
     void begin(const Motion& motion, std::span<const Vec3d> accelerations,
                std::span<const std::uint8_t> is_held, double step, double drag = 0,
                const ControlPoints& control_points = {});
-    /// Brings a guess nearer to what only moves as a whole until the energy without contacts is no greater
-    /// than there, so that a step which only descends ends no higher, however far inertia leads.
-    /// @param start  [particle] where the step begins; held particles as in the guess
+    /// Moves a guess towards the purely translated start of each body until the energy without contacts is no
+    /// greater than there, so that a step that only descends ends no higher, however far inertia leads.
+    /// @param start  [particle] the positions at which the step begins; held particles are where they are in
+    /// the guess
     void calm(Places start, std::span<Vec3d> guess, const Workers& workers);
-    /// Minimises from a guess. @param places  in: the guess; held particles are where they are to be. Out:
-    /// the minimum as far as the budget leads
+    /// Minimises the energy from a guess.
+    /// @param places  in: the guess, with held particles at their goals. Out: the minimum, as far as the
+    /// budget permits
     StepReport solve(std::span<Vec3d> places, const ContactEnergy* contacts, const StepBudget& budget,
                      const Workers& workers);
 
     double energy(Places places, const ContactEnergy* contacts, const Workers& workers) const;
-    /// The forces that are missing for equilibrium at these places: those by which particles are stopped or
-    /// held, and what the solver has left.
+    /// The forces that are missing for equilibrium at these positions: those that stop or hold particles, and
+    /// the residual of the solver.
     ScratchVector<Vec3d> missing_forces(Places places, const ContactEnergy* contacts,
                                         const Workers& workers) const;
-    /// Translates whole bodies of which nothing is held to where contacts balance their inertia, by Newton's
-    /// method in those translations alone. No elastic force acts against a translation, so whatever the
-    /// solver leaves of one stays as momentum, while the material pulls back what is left within a body: so
-    /// this is solved more exactly than all else, and far faster.
-    /// @param tolerance  how far a body may go, as if inertia alone kept it; length
-    /// @return whether all are in balance
+    /// Translates whole bodies of which nothing is held to positions at which contacts balance their inertia,
+    /// by Newton's method in those translations alone. No elastic force acts against a translation, so any
+    /// error that the solver leaves in one remains as momentum, whereas the material corrects errors within a
+    /// body. Therefore translations are solved more precisely than everything else, and much faster.
+    /// @param tolerance  the displacement that the imbalance of a body would cause against its inertia alone;
+    /// length
+    /// @return whether all bodies are in balance
     bool balance(std::span<Vec3d> places, const ContactEnergy& contacts, double tolerance,
                  const Workers& workers);
-    /// The elastic part alone, without dissipation in progress.
+    /// The elastic part alone, without dissipation.
     const ElasticModel& elastic() const { return elastic_; }
     std::span<const double> masses() const { return masses_; }
-    /// [particle] the stiffness with which the material resists a displacement of it alone, in the mean of
-    /// all directions; force / length
+    /// [particle] the stiffness with which the material resists a displacement of this particle alone,
+    /// averaged over all directions; force / length
     std::vector<double> stiffnesses(Places places, const Workers& workers);
-    /// [particle] the first one of its body: of those that the material connects.
+    /// [particle] the first particle of its body. A body consists of particles that the material connects.
     std::span<const std::uint32_t> bodies() const { return translations_.bodies(); }
     std::size_t level_count() const { return multigrid_.level_count(); }
 
   private:
-    /// Of inertia alone.
+    /// The energy of inertia alone.
     double kinetic_energy(Places places, const Workers& workers) const;
     void begin_derivatives(Places places);
     void add_derivatives(Places places, const ContactEnergy* contacts, const Workers& workers);
     void hold(const Workers& workers);
     double slope() const;
-    /// Goes so far along the direction that the energy falls. @param energy  in: at the places. Out: at the
-    /// new ones. @param energy_at  gives that of other places @return the share of the direction
+    /// Goes along the direction to a point where the energy is sufficiently lower. @param energy  in: at the
+    /// given positions. Out: at the new ones. @param energy_at  returns the energy at other positions @return
+    /// the share of the direction
     template <typename EnergyAt>
     double search(std::span<Vec3d> places, double& energy, const EnergyAt& energy_at,
                   std::uint32_t& halvings);
@@ -128,14 +135,14 @@ class ImplicitStep {
     std::span<const std::uint8_t> is_held_;
     std::vector<Vec3d> inertial_; ///< y
     std::vector<double> inertia_; ///< c m / h^2
-    double total_inertia_ = 0;    ///< of particles of the motion that are not held
+    double total_inertia_ = 0;    ///< of those particles of the motion that are not held
     std::vector<Vec3d> gradient_, trial_;
     std::vector<Float4> right_side_, direction_;
 };
 
-/// The motion after a step that led to these places. @param is_touching  [particle] 1 where a contact pushed
-/// or stopped a particle, so that its velocity may have jumped: there the step counts as one of first order,
-/// and so does the next
+/// The motion after a step that led to these positions. @param is_touching  [particle] 1 if a contact pushed
+/// or stopped the particle, so that its velocity may have jumped: this step and the next then count as steps
+/// of first order
 void advance(Motion& motion, Places places, std::span<const std::uint8_t> is_touching, double step);
 
 } // namespace echinus

@@ -22,12 +22,12 @@ float set_rest_shape(ElasticTriangle& triangle, const std::array<std::array<doub
     return triangle.area = static_cast<float>(twice_area / 2);
 }
 
-/// A triangle as its places deform it.
+/// A triangle as its current positions deform it.
 struct Membrane::State {
     Vec3d warp, weft; ///< the deformed directions Fu and Fv
     double warp_length, weft_length;
     double shear;                    ///< Fu.Fv
-    double warp_stress, weft_stress; ///< along them, with damping: of A/2 the derivative by e
+    double warp_stress, weft_stress; ///< along them, with damping: the derivative of the energy by e, over A
     double stiffening;               ///< 1 + damping / h
 };
 
@@ -101,7 +101,7 @@ double Membrane::energy(Places places, const Workers& workers) const {
 
 namespace {
 
-/// By the derivatives of a triangle's energy by its deformed directions.
+/// Adds the gradient of a triangle's energy, given its derivatives with respect to the deformed directions.
 void scatter(const ElasticTriangle& triangle, const Vec3d& by_warp, const Vec3d& by_weft, const RowSlab& slab,
              std::span<Vec3d> gradient) {
     for (std::size_t k = 0; k < 3; ++k)
@@ -129,7 +129,7 @@ void Membrane::add_hessian(std::uint32_t number, const State& s, const RowSlab& 
     const ElasticTriangle& triangle = triangles_[number];
     const float area = triangle.area;
     const auto stiffening = static_cast<float>(s.stiffening);
-    // Tension resists turning; what compression adds there is negative and left out.
+    // Tension resists rotation; the contribution of compression is negative and left out.
     const auto warp_turning = static_cast<float>(std::max(s.warp_stress / s.warp_length, 0.0));
     const auto weft_turning = static_cast<float>(std::max(s.weft_stress / s.weft_length, 0.0));
     const Float4 warp(s.warp * (1 / s.warp_length)), weft(s.weft * (1 / s.weft_length));

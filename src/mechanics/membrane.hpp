@@ -10,8 +10,8 @@
 namespace echinus {
 
 /// Cloth between three particles: an orthotropic membrane after Baraff and Witkin (1998) as a finite element
-/// (Kim 2020), with the coupling of warp and weft that Poisson's ratio gives. Stiffnesses are forces per
-/// width: mass / s^2, in SI N/m.
+/// (Kim 2020), in which Poisson's ratio couples warp and weft. Stiffnesses are forces per width: mass / s^2,
+/// in SI N/m.
 struct ElasticTriangle {
     std::array<std::uint32_t, 3> particles;
     std::array<float, 3> warp, weft; ///< by corner: the derivatives of its barycentric coordinate, per length
@@ -21,26 +21,26 @@ struct ElasticTriangle {
     float damping; ///< viscosity over stiffness, seconds
 };
 
-/// Places the derivatives for a triangle at rest with corners in the coordinates of warp and weft.
-/// @return the area, not positive where the corners do not turn counter-clockwise
+/// Sets the derivatives for a triangle whose rest corners are given in the coordinates of warp and weft.
+/// @return the area; not positive if the corners are not in counter-clockwise order
 float set_rest_shape(ElasticTriangle& triangle, const std::array<std::array<double, 2>, 3>& corners);
 
-/// The energy of triangles: A/2 (e^T C e + G (Fu.Fv)^2), e the extensions |Fu| - 1 and |Fv| - 1; and what a
-/// step dissipates, damping / h of the same form in the change of e.
+/// The energy of triangles, A/2 (e^T C e + G (Fu.Fv)^2), where e are the extensions |Fu| - 1 and |Fv| - 1;
+/// and the dissipation of a step, damping / h times the same quadratic form C in the change of e.
 class Membrane {
   public:
     Membrane(std::vector<ElasticTriangle> triangles, std::size_t particle_count);
 
     std::span<const ElasticTriangle> triangles() const { return triangles_; }
     void couple(std::vector<Coupling>& blocks) const;
-    /// After the pattern is set. @param matrix  of that pattern
+    /// To be called after the pattern is set. @param matrix  has that pattern
     void find_entries(const BlockMatrix& matrix);
 
     /// @param step  seconds
     void begin_step(Places places, double step);
     double energy(Places places, const Workers& workers) const;
-    /// The gradient, and a Hessian that is positive semi-definite: of compressed directions the negative
-    /// curvature is left out. @param hessian  or null
+    /// The gradient and a positive semi-definite Hessian: the negative curvature of compressed directions is
+    /// left out. @param hessian  may be null
     void add_derivatives(Places places, std::span<Vec3d> gradient, BlockMatrix* hessian,
                          const Workers& workers) const;
 
@@ -52,7 +52,7 @@ class Membrane {
 
     std::vector<ElasticTriangle> triangles_;
     SlabLists slabs_;
-    std::vector<std::array<std::uint32_t, 9>> entries_;    ///< [triangle] of blocks, row by row
+    std::vector<std::array<std::uint32_t, 9>> entries_;    ///< [triangle] the blocks, row by row
     std::vector<std::array<double, 2>> extensions_before_; ///< [triangle] when the step began
     double inverse_step_ = 0;
 };

@@ -11,12 +11,12 @@ namespace echinus {
 
 namespace {
 
-/// The derivatives of the determinant by the columns.
+/// The derivatives of the determinant with respect to the columns.
 Matrix3 cofactors(const Matrix3& f) {
     return {cross(f[1], f[2]), cross(f[2], f[0]), cross(f[0], f[1])};
 }
 
-/// An eigenvector of the Hessian by F, a matrix, and its eigenvalue.
+/// An eigenvector of the Hessian with respect to F, as a matrix, and its eigenvalue.
 struct Mode {
     Matrix3 matrix;
     double value;
@@ -62,7 +62,7 @@ std::array<Mode, 9> modes_of(const RotationVariantSvd& svd, double mu, double la
     return modes;
 }
 
-/// By corner: the derivatives of barycentric coordinates.
+/// The gradients of the barycentric coordinates, by corner.
 std::array<Vec3d, 4> corner_gradients(const ElasticTetrahedron& tetrahedron) {
     const Vec3d b(tetrahedron.gradients[0]), c(tetrahedron.gradients[1]), d(tetrahedron.gradients[2]);
     return {-(b + c + d), b, c, d};
@@ -72,8 +72,8 @@ double norm_sq(const Matrix3& m) {
     return dot(m[0], m[0]) + dot(m[1], m[1]) + dot(m[2], m[2]);
 }
 
-/// The change of Green's strain, (F^T F - F0^T F0) / 2, since the step began: none where an element only
-/// turns. Its derivative by F is F times the result.
+/// The change of Green's strain, (F^T F - F0^T F0) / 2, since the step began; zero if an element only
+/// rotates. With respect to F, half its squared norm has the derivative F times the change.
 Matrix3 strain_change(const Matrix3& f, const Matrix3& before) {
     std::array<std::array<double, 3>, 3> e{};
     for (std::size_t i = 0; i < 3; ++i)
@@ -176,7 +176,7 @@ void NeoHookean::add_derivatives(Places places, std::span<Vec3d> gradient, Block
         for (const Mode& mode : modes_of(decompose(f), mu, lambda))
             add(moved_by(mode.matrix), std::abs(mode.value));
         if (!(viscosity > 0)) return;
-        // Of the change of strain, six components: the symmetric matrices with one or two entries.
+        // The six components of the change of strain: the symmetric matrices with one or two entries.
         for (std::size_t p = 0; p < 3; ++p)
             for (std::size_t q = p; q < 3; ++q) {
                 Matrix3 mode{};

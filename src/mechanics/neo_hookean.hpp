@@ -11,9 +11,9 @@
 
 namespace echinus {
 
-/// The energy of tetrahedra of stable Neo-Hookean material (Smith et al. 2018; as in Macklin and Mueller
-/// 2021): V (mu/2 (|F|^2 - 3) - mu (J - 1) + (lambda + mu)/2 (J - 1)^2), with viscosity of the strain. Its
-/// Hessian is made positive semi-definite by its analytic eigensystem (Smith et al. 2019).
+/// The energy of tetrahedra of a stable Neo-Hookean material (Smith et al. 2018; in the form of Macklin and
+/// Mueller 2021): V (mu/2 (|F|^2 - 3) - mu (J - 1) + (lambda + mu)/2 (J - 1)^2), with a viscous term in the
+/// strain. Its Hessian is made positive semi-definite by its analytic eigensystem (Smith et al. 2019).
 class NeoHookean {
   public:
     NeoHookean(std::vector<ElasticTetrahedron> tetrahedra, std::size_t particle_count);
@@ -23,7 +23,7 @@ class NeoHookean {
 
     void begin_step(Places places, double step);
     double energy(Places places, const Workers& workers) const;
-    /// @param hessian  or null
+    /// @param hessian  may be null
     void add_derivatives(Places places, std::span<Vec3d> gradient, BlockMatrix* hessian,
                          const Workers& workers) const;
 

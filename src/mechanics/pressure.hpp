@@ -9,28 +9,28 @@
 
 namespace echinus {
 
-/// Of a closed surface, its corners counter-clockwise as seen from outside.
+/// A triangle of a closed surface, with corners in counter-clockwise order as seen from outside.
 struct PressedTriangle {
     std::array<std::uint32_t, 3> particles;
-    double pressure; ///< beyond that outside, force per area
+    double pressure; ///< in excess of the pressure outside; force per area
 };
 
-/// The work of a constant pressure inside closed surfaces, -p V: the forces on a surface sum up to nothing,
-/// and move it as a whole nowhere.
+/// The work of a constant pressure inside closed surfaces, -p V. The forces on a surface sum to zero, so they
+/// do not move it as a whole.
 class Pressure {
   public:
     Pressure(std::vector<PressedTriangle> triangles, std::size_t particle_count);
 
     void begin_step(Places places);
     double energy(Places places, const Workers& workers) const;
-    /// The Hessian, which is not semi-definite, is left out: it is smaller than that of the membrane that
-    /// bears the pressure by an element's size over the radius.
+    /// The Hessian, which is indefinite, is left out: relative to that of the membrane that bears the
+    /// pressure, it is small by the ratio of an element's size to the radius.
     void add_gradient(Places places, std::span<Vec3d> gradient, const Workers& workers) const;
 
   private:
     std::vector<PressedTriangle> triangles_;
     SlabLists slabs_;
-    Vec3d origin_; ///< any place near the surface, or volumes would be small differences of large ones
+    Vec3d origin_; ///< a point near the surface, so that volumes are not small differences of large numbers
 };
 
 } // namespace echinus

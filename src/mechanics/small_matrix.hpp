@@ -9,7 +9,7 @@
 
 namespace echinus {
 
-/// Three columns.
+/// A 3 x 3 matrix as its three columns.
 using Matrix3 = std::array<Vec3d, 3>;
 
 inline Vec3d times(const Matrix3& m, const Vec3d& v) {
@@ -20,14 +20,14 @@ inline double determinant(const Matrix3& m) {
     return dot(cross(m[0], m[1]), m[2]);
 }
 
-/// The eigenvalues of a symmetric matrix and its eigenvectors of unit length, by Jacobi's rotations.
+/// The eigenvalues of a symmetric matrix and its unit eigenvectors, by Jacobi rotations.
 struct Eigensystem {
     std::array<double, 3> values;
     Matrix3 vectors;
 };
 
 inline Eigensystem eigensystem(const std::array<std::array<double, 3>, 3>& symmetric) {
-    constexpr int kSweeps = 12; // converges quadratically: six do
+    constexpr int kSweeps = 12; // six suffice, since convergence is quadratic
     constexpr double kNegligible = 1e-30;
     auto a = symmetric;
     std::array<std::array<double, 3>, 3> v{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
@@ -60,7 +60,7 @@ inline Eigensystem eigensystem(const std::array<std::array<double, 3>, 3>& symme
              Vec3d{v[0][2], v[1][2], v[2][2]}}};
 }
 
-/// F = U diag(stretches) V^T with rotations U and V: where F inverts, the least stretch is negative.
+/// F = U diag(stretches) V^T with rotations U and V; if F inverts orientation, the least stretch is negative.
 struct RotationVariantSvd {
     Matrix3 u, v;
     std::array<double, 3> stretches;
@@ -71,7 +71,7 @@ inline RotationVariantSvd decompose(const Matrix3& f) {
     for (std::size_t i = 0; i < 3; ++i)
         for (std::size_t j = 0; j < 3; ++j) gram[i][j] = dot(f[i], f[j]);
     Eigensystem system = eigensystem(gram);
-    // Descending.
+    // Sort in descending order.
     for (const auto& [p, q] : {std::pair{0U, 1U}, {1U, 2U}, {0U, 1U}})
         if (system.values[p] < system.values[q]) {
             std::swap(system.values[p], system.values[q]);
@@ -85,7 +85,7 @@ inline RotationVariantSvd decompose(const Matrix3& f) {
         const Vec3d across = cross(direction, axis);
         return across * (1 / length(across));
     };
-    constexpr double kNegligible = 1e-12; // a stretch without a direction
+    constexpr double kNegligible = 1e-12; // a smaller relative stretch has no direction
     Vec3d first = times(f, result.v[0]);
     const double largest = length(first);
     first = largest > 0 ? first * (1 / largest) : Vec3d{1, 0, 0};

@@ -48,7 +48,7 @@ void Springs::add_derivatives(Places places, std::span<Vec3d> gradient, BlockMat
         const ElasticSpring& spring = springs_[s];
         const Vec3d across = places[spring.b] - places[spring.a];
         const double now = length(across);
-        if (!(now > 0)) return; // no direction
+        if (!(now > 0)) return; // it has no direction
         const Vec3d direction = across * (1 / now);
         const double stiffness = double{spring.stiffness}, share = double{spring.damping} * inverse_step_;
         const double tension =

@@ -8,7 +8,7 @@
 
 namespace echinus {
 
-/// A thread, a seam: k/2 (l - rest length)^2.
+/// A thread or a seam, with the energy k/2 (l - rest length)^2.
 struct ElasticSpring {
     std::uint32_t a, b;
     float rest_length; ///< not negative
@@ -25,7 +25,7 @@ class Springs {
 
     void begin_step(Places places, double step);
     double energy(Places places, const Workers& workers) const;
-    /// @param hessian  or null
+    /// @param hessian  may be null
     void add_derivatives(Places places, std::span<Vec3d> gradient, BlockMatrix* hessian,
                          const Workers& workers) const;
 

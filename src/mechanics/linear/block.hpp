@@ -7,8 +7,8 @@
 
 namespace echinus {
 
-/// Three floats and one that pads them to a vector register. GCC's and Clang's vectors have the same bits on
-/// every machine: each lane is computed by itself.
+/// Three floats and a fourth that pads them to a vector register. The vectors of GCC and Clang give the same
+/// bits on every machine, since each lane is computed separately.
 struct Float4 {
     using Lanes = float __attribute__((vector_size(16)));
     Lanes lanes{};
@@ -40,7 +40,7 @@ inline float dot(const Float4& a, const Float4& b) {
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
-/// A matrix of three rows and columns, by columns.
+/// A 3 x 3 matrix, stored by columns.
 struct Block {
     std::array<Float4, 3> columns;
 

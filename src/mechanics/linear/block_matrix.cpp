@@ -29,7 +29,7 @@ void sort_unique(std::vector<Coupling>& couplings) {
     couplings.erase(std::unique(couplings.begin(), couplings.end()), couplings.end());
 }
 
-/// @param couplings  ascending, each once
+/// @param couplings  ascending and unique
 template <typename Value>
 void set_rows(Rows<Value>& rows, std::size_t row_count, std::span<const Coupling> couplings) {
     rows.first.assign(row_count + 1, 0);
@@ -102,13 +102,14 @@ void BlockMatrix::set_contacts() {
     contacts.first[row_count()] = static_cast<std::uint32_t>(contacts.columns.size());
 }
 
-/// Sets `contacts.first` to where the entries that were added to each row begin in their order.
+/// Sets `contacts.first` to the position at which the added entries of each row begin in their order.
 void BlockMatrix::order_contacts_by_rows() {
     contacts.first.assign(row_count() + 1, 0);
     for (const AddedContact& entry : added_contacts_) ++contacts.first[entry.at[0] + 1];
     std::partial_sum(contacts.first.begin(), contacts.first.end(), contacts.first.begin());
     contact_order_.resize(added_contacts_.size());
-    // Each row's entry holds where its next one goes, and so ends where the next row begins.
+    // Each row's entry is advanced to the position of its next element, and so ends where the next row
+    // begins.
     for (std::uint32_t number = 0; number < added_contacts_.size(); ++number)
         contact_order_[contacts.first[added_contacts_[number].at[0]]++] = number;
     std::copy_backward(contacts.first.begin(), contacts.first.end() - 1, contacts.first.end());

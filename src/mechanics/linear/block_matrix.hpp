@@ -11,7 +11,7 @@
 
 namespace echinus {
 
-/// Entries of a square matrix by rows: columns ascending within each.
+/// The entries of a square matrix by rows, with ascending columns in each row.
 template <typename Value>
 struct Rows {
     std::vector<std::uint32_t> first{0}; ///< [row_count + 1]
@@ -21,39 +21,41 @@ struct Rows {
     std::size_t row_count() const { return first.size() - 1; }
 };
 
-/// Particles that a term of energy couples.
+/// Two particles that a term of the energy couples.
 using Coupling = std::array<std::uint32_t, 2>;
 
-/// A symmetric matrix of 3 x 3 blocks, of which both triangles are stored. Entries of three kinds:
+/// A symmetric matrix of 3 x 3 blocks, of which both triangles are stored. It has entries of three kinds:
 /// - blocks on a pattern that is found once for a topology;
-/// - multiples of the identity on another such pattern: of bending, which couples particles that no face
-///   joins and would otherwise take as much memory traffic as all else;
+/// - multiples of the identity on a second such pattern, for bending, which couples particles that no face
+///   joins: as blocks they would cause as much memory traffic as everything else;
 /// - blocks where contacts couple particles, on a pattern that changes.
 class BlockMatrix {
   public:
-    Rows<Block> blocks; ///< with each row's diagonal
+    Rows<Block> blocks; ///< including the diagonal of each row
     Rows<float> multiples;
     Rows<Block> contacts;                ///< none on the diagonal
-    std::vector<std::uint32_t> diagonal; ///< [row_count] where it stands in `blocks`
-    std::vector<Block> inverse_diagonal; ///< [row_count] after invert_diagonal()
+    std::vector<std::uint32_t> diagonal; ///< [row_count] index in `blocks`
+    std::vector<Block> inverse_diagonal; ///< [row_count] valid after invert_diagonal()
 
     std::size_t row_count() const { return diagonal.size(); }
 
-    /// Sets both fixed patterns. @param coupled, coupled_by_multiples  in any order, each once or more often;
-    /// of those that are in both, the multiples belong to the blocks
+    /// Sets both fixed patterns. @param coupled, coupled_by_multiples  in any order, possibly repeated;
+    /// multiples for a coupling that is in both lists are added to its block
     void set_pattern(std::size_t row_count, std::vector<Coupling> coupled,
                      std::vector<Coupling> coupled_by_multiples);
-    /// Where the block of a row and a column stands. @return kNone where the pattern has none
+    /// The index of the block in a row and a column. @return kNone if the pattern has none
     std::uint32_t find_block(std::uint32_t row, std::uint32_t column) const;
     std::uint32_t find_multiple(std::uint32_t row, std::uint32_t column) const;
     static constexpr std::uint32_t kNone = UINT32_MAX;
 
-    /// Adds a block where contacts couple a row and a column beside the pattern; not on the diagonal.
+    /// Adds a block for a row and a column that contacts couple and the pattern does not; not on the
+    /// diagonal.
     void add_contact(const Coupling& at, const Block& value) { added_contacts_.push_back({at, value}); }
-    /// Sets `contacts` to what was added since clear(): blocks of one place are summed in their order.
+    /// Sets `contacts` to the blocks added since clear(): those of the same row and column are summed in
+    /// their order.
     void set_contacts();
 
-    /// All values to 0, no contacts.
+    /// Sets all values to 0 and removes all contacts.
     void clear();
     /// @pre each diagonal block is positive definite
     void invert_diagonal(const Workers& workers);
@@ -83,7 +85,8 @@ class BlockMatrix {
     std::vector<std::uint32_t> contact_order_;
 };
 
-/// Rows of a loop over rows that one thread takes at once: fixed, so that the threads decide no bits.
+/// The number of rows that one thread takes at once in a loop over rows. It is fixed, so that the result does
+/// not depend on the number of threads.
 inline constexpr std::size_t kRowsPerPiece = 1024;
 
 } // namespace echinus

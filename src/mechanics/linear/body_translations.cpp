@@ -60,8 +60,8 @@ void BodyTranslations::correct(const BlockMatrix& a, std::span<const Float4> b, 
         const Vec3d& rest = sums[body].residual;
         const Vec3d translation =
             Vec3d{dot(cross(rest, q), r), dot(cross(p, rest), r), dot(cross(p, q), rest)} * (1 / size);
-        // A hostile saved state may have forces that overflow: then the body stays, as in the rest of the
-        // solve.
+        // The forces of a hostile saved state may overflow: the body then stays where it is, as in the rest
+        // of the solver.
         if (is_finite(translation)) translations[body] = Float4(translation);
     }
     for (std::size_t row = 0; row < bodies_.size(); ++row) x[row] += translations[bodies_[row]];

@@ -7,12 +7,12 @@
 
 namespace echinus {
 
-/// The factor of a small dense matrix, symmetric and positive definite: A = L L^T. O(n^3).
+/// The factor of a small, dense, symmetric and positive definite matrix: A = L L^T. O(n^3).
 template <typename T>
 class Cholesky {
   public:
-    /// @param matrix  [size * size] of which the lower triangle by rows is read. A pivot that rounding has
-    /// left not positive counts as that of a row of its own, decoupled from the others.
+    /// @param matrix  [size * size] by rows; only the lower triangle is read. If rounding leaves a pivot that
+    /// is not positive, its row is treated as decoupled from the others.
     void factorise(std::size_t size, std::span<const T> matrix) {
         size_ = size;
         factor_.assign(matrix.begin(), matrix.end());
@@ -51,7 +51,7 @@ class Cholesky {
     }
 
   private:
-    /// As a share of the diagonal entry: below it, what is left of the pivot is rounding.
+    /// Relative to the diagonal entry: a smaller pivot is only rounding.
     static constexpr T kLeastPivot = static_cast<T>(sizeof(T) == 4 ? 1e-6 : 1e-13);
 
     std::size_t size_ = 0;

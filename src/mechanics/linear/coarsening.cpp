@@ -13,13 +13,13 @@ namespace echinus {
 
 namespace {
 
-/// The nodes around one, by breadth-first search.
+/// The nodes around a node, by breadth-first search.
 class Neighbourhood {
   public:
     explicit Neighbourhood(const Rows<Block>& graph)
         : graph_(graph), seen_from_(graph.row_count(), kNobody), distances_(graph.row_count()) {}
 
-    /// Those within so many edges, the nearer first. The span holds until the next call.
+    /// The nodes within a number of edges, nearer ones first. The span is valid until the next call.
     std::span<const std::uint32_t> around(std::uint32_t node, std::uint32_t radius) {
         found_.assign(1, node);
         ++search_;
@@ -52,7 +52,8 @@ struct Parent {
     friend auto operator<=>(const Parent&, const Parent&) = default;
 };
 
-/// Of the moving least squares at a node: the value there of the linear function that fits the parents'.
+/// The weights of moving least squares at a node: they give the value there of the linear function that fits
+/// the parents' values.
 std::vector<double> weights_at(const Vec3d& place, std::span<const Parent> parents,
                                std::span<const Vec3d> places) {
     constexpr std::size_t kTerms = 4;
@@ -94,8 +95,8 @@ struct CoarseNodes {
     std::uint32_t count = 0;
 };
 
-/// @param keeps_small  whether all nodes of a part that has no more of them than it takes to represent its
-/// rotations are coarse
+/// @param keeps_small  whether all nodes of a component are coarse if it has no more nodes than are needed to
+/// represent its rotations
 CoarseNodes choose_coarse(const Rows<Block>& graph, Neighbourhood& neighbourhood, bool keeps_small) {
     constexpr auto kSmall = static_cast<std::uint32_t>(threshold::kMostParents);
     CoarseNodes coarse{std::vector<std::uint32_t>(graph.row_count(), BlockMatrix::kNone)};
@@ -115,7 +116,7 @@ CoarseNodes choose_coarse(const Rows<Block>& graph, Neighbourhood& neighbourhood
 Coarsening coarsen(const Rows<Block>& graph, std::span<const Vec3d> places) {
     Neighbourhood neighbourhood(graph);
     CoarseNodes coarse = choose_coarse(graph, neighbourhood, true);
-    // Where most parts are that small, there would be no end of it.
+    // If most components are that small, coarsening would never end.
     if (coarse.count > graph.row_count() / 2) coarse = choose_coarse(graph, neighbourhood, false);
     const std::vector<std::uint32_t>& numbers = coarse.numbers;
     Coarsening result;

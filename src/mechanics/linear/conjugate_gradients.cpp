@@ -7,7 +7,7 @@ namespace echinus {
 
 namespace {
 
-/// In double, by pieces that are summed in their order.
+/// Computed in double, by pieces that are summed in order.
 double dot(std::span<const Float4> a, std::span<const Float4> b, const Workers& workers) {
     constexpr std::size_t kLanes = 64;
     ScratchVector<double> sums(Workers::piece_count(a.size(), kRowsPerPiece), workers.scratch());

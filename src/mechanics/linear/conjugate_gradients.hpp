@@ -12,9 +12,9 @@ namespace echinus {
 /// Conjugate gradients, preconditioned by multigrid.
 class ConjugateGradients {
   public:
-    /// Solves A x = b. @param x  from 0 on, out
+    /// Solves A x = b. @param x  out; iteration starts from 0
     /// @param tolerance  of the residual in the preconditioner's norm, relative to b
-    /// @return iterations made
+    /// @return the number of iterations
     std::uint32_t solve(const BlockMatrix& a, Multigrid& preconditioner, std::span<const Float4> b,
                         std::span<Float4> x, std::uint32_t most_iterations, double tolerance,
                         const Workers& workers);

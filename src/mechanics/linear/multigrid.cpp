@@ -12,9 +12,10 @@ namespace echinus {
 
 namespace {
 
-/// Coarse rows that one thread computes at once. A fine row near the border of two pieces is computed twice.
+/// The number of coarse rows that one thread computes at once. A fine row near the border of two pieces is
+/// computed twice.
 constexpr std::size_t kCoarseRowsPerPiece = 256;
-/// Rows of a sweep that see each other's new values.
+/// The number of rows in a sweep that see each other's new values.
 constexpr std::size_t kRowsPerSlab = kRowsPerPiece;
 
 Float4 times(const Block& block, const Float4& x) {
@@ -24,7 +25,7 @@ Float4 times(float multiple, const Float4& x) {
     return x * multiple;
 }
 
-/// The product of a row with x, of columns in [begin, end) only.
+/// The product of a row with x, restricted to the columns in [begin, end).
 template <typename Value>
 Float4 times_range(const Rows<Value>& rows, std::size_t row, std::size_t begin, std::size_t end,
                    std::span<const Float4> x) {
@@ -66,7 +67,7 @@ float coupling_sq(const Block& inverse_i, float multiple, const Block& inverse_j
     return multiple * multiple * trace_of_product(inverse_i, inverse_j);
 }
 
-/// How strongly a row is coupled to columns outside of [begin, end), the sum over them.
+/// How strongly a row is coupled to the columns outside [begin, end): the sum over these.
 template <typename Value>
 float coupling_beyond(const BlockMatrix& a, const Rows<Value>& rows, std::size_t row, std::size_t begin,
                       std::size_t end) {
@@ -80,8 +81,8 @@ float coupling_beyond(const BlockMatrix& a, const Rows<Value>& rows, std::size_t
     return sum;
 }
 
-/// A sweep forwards from x = 0. The residual is left to the columns that a row has not seen: those behind it
-/// and those of other slabs; and to the excess of the diagonal.
+/// A forward sweep from x = 0. The residual that it leaves comes from the columns that a row has not seen,
+/// which are those after it and those of other slabs, and from the excess of the diagonal.
 void sweep_from_zero(const BlockMatrix& a, std::span<const Float4> b, std::span<Float4> x,
                      const Workers& workers) {
     workers.for_ranges(
@@ -106,7 +107,7 @@ void residual_of_sweep(const BlockMatrix& a, std::span<const float> excess, std:
                        });
 }
 
-/// A sweep backwards, whose slabs see each other as `before`.
+/// A backward sweep, in which each slab sees `before` as the values of the others.
 void sweep_back(const BlockMatrix& a, std::span<const Float4> b, std::span<const Float4> before,
                 std::span<Float4> x, const Workers& workers) {
     const auto last = a.row_count();
@@ -121,7 +122,7 @@ void sweep_back(const BlockMatrix& a, std::span<const Float4> b, std::span<const
                        });
 }
 
-/// Of each coarse node the fine ones that follow it.
+/// For each coarse node, the fine nodes that follow it.
 Rows<float> transposed(const Rows<float>& parents, std::size_t coarse_count) {
     Rows<float> children;
     children.first.assign(coarse_count + 1, 0);
@@ -153,7 +154,7 @@ void Multigrid::add_level(const BlockMatrix& fine, std::span<const Vec3d> places
     if (fine.row_count() <= threshold::kMostLastNodes) return;
     Transfer transfer;
     transfer.coarsening = coarsen(fine.blocks, places);
-    // A graph without edges has as many coarse nodes: it is diagonal, and sweeps solve it.
+    // In a graph without edges all nodes are coarse: its matrix is diagonal, and sweeps solve it.
     if (transfer.coarsening.coarse_count() > fine.row_count() / 2) return;
     transfer.children = transposed(transfer.coarsening.parents, transfer.coarsening.coarse_count());
     BlockMatrix coarse;
@@ -205,7 +206,7 @@ void Multigrid::plan(const BlockMatrix& fine, Transfer& transfer, BlockMatrix& c
     }
 }
 
-/// P^T A P. @param is_held  of the fine rows; empty: none
+/// P^T A P. @param is_held  [fine row], or empty if none is held
 void Multigrid::product(const BlockMatrix& fine, std::span<const std::uint8_t> is_held,
                         const Transfer& transfer, BlockMatrix& coarse, const Workers& workers) {
     const Rows<float>& parents = transfer.coarsening.parents;
@@ -236,8 +237,7 @@ void Multigrid::product(const BlockMatrix& fine, std::span<const std::uint8_t> i
     };
     workers.for_ranges(coarse.row_count(), kCoarseRowsPerPiece,
                        [&](std::size_t worker, std::size_t piece, std::size_t begin, std::size_t end) {
-                           ScratchVector<Block> locals(
-                               workers.scratch(worker)); // for one row after the other
+                           ScratchVector<Block> locals(workers.scratch(worker)); // reused for every row
                            for (const std::uint32_t row : transfer.fine_of_piece[piece])
                                if (is_held.empty() || is_held[row] == 0) add_row(row, begin, end, locals);
                        });
@@ -249,7 +249,7 @@ void Multigrid::product(const BlockMatrix& fine, std::span<const std::uint8_t> i
     }
 }
 
-/// Contacts couple coarse nodes that the pattern joins, and others.
+/// Contacts couple coarse nodes of the pattern and other pairs of coarse nodes.
 void Multigrid::add_contacts(const BlockMatrix& fine, std::span<const std::uint8_t> is_held,
                              const Transfer& transfer, BlockMatrix& coarse) {
     const Rows<float>& parents = transfer.coarsening.parents;
@@ -272,9 +272,9 @@ void Multigrid::add_contacts(const BlockMatrix& fine, std::span<const std::uint8
     coarse.set_contacts();
 }
 
-/// With M = (1 + excess) D + L, of the slabs' lower triangles L, the sweeps converge where M + M^T - A is
-/// positive definite. A block beyond the slabs is bounded by its coupling c: 2 x_i A_ij x_j <= c (x_i D_i x_i
-/// + x_j D_j x_j); so half of the sum of a row's couplings is enough.
+/// With M = (1 + excess) D + L, where L contains the lower triangles of the slabs, the sweeps converge if M +
+/// M^T - A is positive definite. A block beyond the slabs is bounded by its coupling c: 2 x_i A_ij x_j <= c
+/// (x_i D_i x_i + x_j D_j x_j); so half of the sum of a row's couplings is sufficient.
 void Multigrid::prepare(std::size_t level, BlockMatrix& matrix, const Workers& workers) {
     matrix.invert_diagonal(workers);
     std::vector<float>& excess = levels_[level].excess;

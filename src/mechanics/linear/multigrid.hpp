@@ -11,18 +11,18 @@
 
 namespace echinus {
 
-/// An approximate inverse of a BlockMatrix by Galerkin multigrid on any mesh: one V-cycle with a sweep of
-/// Gauss-Seidel forwards on the way down and one backwards on the way up, so that it is symmetric. Within
-/// slabs of rows a sweep uses what it has just found, and beyond them what was before: the slabs are fixed,
-/// and so the threads decide no bits. The diagonal blocks of rows that are coupled beyond their slabs count
-/// for so much more that the inverse is positive definite, too, as that of l1 smoothers (Baker et al. 2011).
+/// An approximate inverse of a BlockMatrix by Galerkin multigrid on any mesh: one V-cycle with a forward
+/// Gauss-Seidel sweep on the way down and a backward one on the way up, which makes it symmetric. A sweep
+/// uses new values within slabs of rows, and old values beyond them; the slabs are fixed, so the result does
+/// not depend on the number of threads. The diagonal blocks of rows that are coupled beyond their slabs are
+/// enlarged so that the inverse is also positive definite, as for l1 smoothers (Baker et al. 2011).
 class Multigrid {
   public:
-    /// Finds the levels. @param places  [row] at rest
+    /// Builds the levels. @param places  [row] at rest
     Multigrid(const BlockMatrix& pattern, std::span<const Vec3d> places);
 
-    /// Computes the coarse matrices. The matrix has to stay as it is while apply() is called.
-    /// @param is_held  [row] 1 for those whose unknowns stay 0
+    /// Computes the coarse matrices. The matrix must not change while apply() is used.
+    /// @param is_held  [row] 1 for rows whose unknowns stay 0
     void set(BlockMatrix& matrix, std::span<const std::uint8_t> is_held, const Workers& workers);
     /// z = M^-1 r
     void apply(std::span<const Float4> r, std::span<Float4> z, const Workers& workers);
@@ -30,23 +30,24 @@ class Multigrid {
     std::size_t level_count() const { return levels_.size(); }
 
   private:
-    /// Makes the next coarser matrix of one.
+    /// Computes the next coarser matrix from a fine one.
     struct Transfer {
         Coarsening coarsening;
         Rows<float> children; ///< [coarse node] the fine ones that follow it, ascending
-        // The plan of the product, by fine node: the coarse nodes that its row of A P has,
+        // The plan of the product, by fine node. The locals of a node are the coarse nodes in its row of A P:
         Rows<std::uint8_t> blocks,
-            multiples; ///< [entry of A, parent of its column] which of these it adds to
-        std::vector<std::uint32_t> first_local;                ///< [fine node + 1]
-        std::vector<std::uint32_t> locals;                     ///< coarse nodes
-        std::vector<std::uint32_t> first_target, targets;      ///< [parent, local] where the product stands
-        std::vector<std::vector<std::uint32_t>> fine_of_piece; ///< [piece of coarse rows] what adds to it
+            multiples; ///< [entry of A, parent of its column] the local to which it adds
+        std::vector<std::uint32_t> first_local;           ///< [fine node + 1]
+        std::vector<std::uint32_t> locals;                ///< coarse nodes
+        std::vector<std::uint32_t> first_target, targets; ///< [parent, local] the block of the product
+        std::vector<std::vector<std::uint32_t>>
+            fine_of_piece; ///< [piece of coarse rows] the fine nodes that add to it
     };
     struct Level {
-        BlockMatrix own;   ///< but on the first
-        Transfer transfer; ///< to the next, but on the last
+        BlockMatrix own;   ///< not on the first level
+        Transfer transfer; ///< to the next level; not on the last level
         std::vector<Float4> right_side, solution, residual, before;
-        std::vector<float> excess; ///< [row] share of the diagonal block by which it counts for more
+        std::vector<float> excess; ///< [row] the share by which the diagonal block is enlarged
     };
 
     void add_level(const BlockMatrix& fine, std::span<const Vec3d> places);
