@@ -19,13 +19,13 @@ Sphere box_sphere(std::span<const Vec3f> points) {
     return {(low + high) * 0.5, length(high - low) / 2};
 }
 
-/// Lengths whose squares are floats, too.
+/// The largest length whose square is still a float.
 constexpr double kLongestWay = 1e18;
 
-/// A particle that goes so many times the bound in a frame is not brought back by anything.
+/// Nothing brings back a particle that moves this many times the bound in a frame.
 constexpr double kFartherOnTheWay = 100;
 
-/// Written so that NaN fails it.
+/// Written so that it is false for NaN.
 bool is_within(const Vec3d& length, double most) {
     return dot(length, length) <= most * most;
 }

@@ -19,7 +19,7 @@ bool same_pose(const RigidTransform& a, const RigidTransform& b) {
 
 constexpr std::size_t kPointsPerPiece = 256;
 
-/// A box around points.
+/// The bounding box of points.
 struct BoxOfPoints {
     Vec3d low, high;
 
@@ -52,10 +52,10 @@ Vec3d direction_from(const Contact& contact, const Vec3f& particle) {
     return distance > 0 ? between * (1 / distance) : Vec3d(contact.normal);
 }
 
-/// The part of a displacement that carries a particle: all that would close the gap, and of the rest as much
-/// as the particle goes by itself. So nothing is dragged along by what only passes.
+/// The part of a displacement that carries a particle: all of the component that would close the gap, and as
+/// much of the rest as the particle moves by itself. So a surface that only passes drags nothing along.
 /// @param away  the direction from the surface to the particle
-/// @param own   the displacement that the particle has without it
+/// @param own   the displacement that the particle has without the collider
 Vec3d taken(const Vec3d& displacement, const Vec3d& away, const Vec3d& own) {
     const Vec3d closing = away * std::max(dot(away, displacement), 0.0);
     const Vec3d rest = displacement - closing;

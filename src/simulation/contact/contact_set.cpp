@@ -11,9 +11,9 @@ namespace echinus {
 
 namespace {
 
-/// The energy of a gap and its derivatives by the gap: the barrier -(1 - s)^2 ln s of the gap's share s of
-/// the thickness (Li et al. 2020), which begins so smoothly that Newton's method sees a contact before it
-/// pushes.
+/// The energy of a gap and its derivatives with respect to the gap, from the barrier -(1 - s)^2 ln s with s
+/// the ratio of the gap to the thickness (Li et al. 2020), which begins so smoothly that Newton's method sees
+/// a contact before it pushes.
 struct GapEnergy {
     double value, first, second;
 };
@@ -23,7 +23,8 @@ GapEnergy gap_energy(double gap, double thickness, double force) {
     const double open = 1 - share, logarithm = portable_log(share);
     GapEnergy energy{-open * open * logarithm, 2 * open * logarithm - open * open / share,
                      -2 * logarithm + 4 * open / share + open * open / (share * share)};
-    // Nearer, or beyond the plane, where only trials come, the barrier goes on as a parabola.
+    // For smaller gaps, including negative ones, which occur only in trials, the barrier continues as a
+    // parabola.
     const double beyond = gap / thickness - share;
     energy.value += (energy.first + energy.second / 2 * beyond) * beyond;
     energy.first += energy.second * beyond;
@@ -118,7 +119,7 @@ void ContactSet::set_free_bodies(std::vector<double> masses, std::span<const std
     borne_.assign(bodies.size(), 0);
 }
 
-/// A body is borne by the layers below the one that it touches, too.
+/// A body is borne not only by the layer that it touches, but also by those below it.
 void ContactSet::find_borne() {
     if (free_masses_.empty()) return;
     std::fill(borne_.begin(), borne_.end(), 0);
@@ -135,8 +136,8 @@ void ContactSet::find_borne() {
     }
 }
 
-/// The mass of the heaviest free body that this contact may have to bear alone. One that grew only once a
-/// body lay on it would be weaker in front of the body than behind it, and roll it on.
+/// The mass of the heaviest free body that this contact may have to bear alone. A barrier that grew only when
+/// a body lay on it would be weaker in front of the body than behind it, and would roll the body along.
 double ContactSet::borne_by(const Contact& contact) const {
     if (free_masses_.empty()) return 0;
     const double of_first = borne_[bodies_[contact.key.points.front()]];
@@ -157,8 +158,8 @@ const ContactSet::Bristle* ContactSet::find(const ContactKey& key) const {
     return nullptr;
 }
 
-/// The bristle that a contact goes on with: its own, or, where the nearest parts of two surfaces have become
-/// others, the mean of those around it in about the same plane.
+/// The bristle that a contact continues: its own, or, if the nearest parts of the two surfaces have changed,
+/// the mean of those around it in about the same plane.
 ContactSet::Bristle ContactSet::remembered(const Contact& contact) const {
     if (const Bristle* const own = find(contact.key)) return *own;
     Bristle mean{};
@@ -209,7 +210,7 @@ void ContactSet::add(const Contact& contact, const Vec3d& start, std::optional<d
     contacts_.push_back(held);
 }
 
-/// The normal force of a gap.
+/// The normal force at a gap.
 double ContactSet::push_of(const Held& contact, double gap) {
     return -gap_energy(gap, contact.thickness, contact.force).first;
 }
@@ -221,7 +222,7 @@ double ContactSet::gap_of(const Held& contact, Places places) const {
     return gap;
 }
 
-/// Along the contact's plane, since it began to hold.
+/// The slip along the contact's plane since the contact began to hold.
 Vec3d ContactSet::slip_of(const Held& contact, Places places) const {
     Vec3d slip = contact.slip_offset;
     for (std::size_t k = 0; k < contact.part_count; ++k)
@@ -229,7 +230,7 @@ Vec3d ContactSet::slip_of(const Held& contact, Places places) const {
     return slip - contact.normal * dot(contact.normal, slip);
 }
 
-/// The part of it that bends the bristle.
+/// The part of the slip that bends the bristle.
 Vec3d ContactSet::held_slip(const Held& contact, Places places) const {
     if (!(contact.most_friction > 0)) return {};
     const Vec3d slip = slip_of(contact, places);
@@ -323,7 +324,7 @@ void ContactSet::end_step(Places places, std::span<const std::optional<FrameChan
               [](const Bristle& a, const Bristle& b) { return a.key.order() < b.key.order(); });
 }
 
-/// Sums up the bristles around each particle by planes: there can be hundreds.
+/// Sums up the bristles around each particle by planes, since there can be hundreds.
 void ContactSet::find_patches() {
     patches_.clear();
     std::fill(first_patch_.begin(), first_patch_.end(), kNone);
@@ -331,7 +332,8 @@ void ContactSet::find_patches() {
         for (std::size_t k = 0; k < 4; ++k) {
             if (bristle.weights[k] == 0) continue;
             const double weight = std::abs(double{bristle.weights[k]});
-            // Of itself a pair may come either way round: seen from the particle.
+            // A pair of the surface with itself may have either orientation: the normal is seen from the
+            // particle.
             const double turn = bristle.weights[k] < 0 ? -1 : 1;
             Patch& patch = patch_at(bristle.key.points[k], bristle.key.obstacle, bristle.normal * turn);
             patch.friction += bristle.friction * (turn * weight);
@@ -341,7 +343,7 @@ void ContactSet::find_patches() {
         }
 }
 
-/// The one of this plane, which may be new.
+/// The patch of this plane, which may be new.
 ContactSet::Patch& ContactSet::patch_at(std::uint32_t particle, std::uint32_t obstacle, const Vec3d& normal) {
     for (std::uint32_t p = first_patch_[particle]; p != kNone; p = patches_[p].next)
         if (patches_[p].obstacle == obstacle && dot(patches_[p].normal, normal) >= threshold::kSamePlane)
@@ -351,7 +353,7 @@ ContactSet::Patch& ContactSet::patch_at(std::uint32_t particle, std::uint32_t ob
     return patches_.back();
 }
 
-/// Where the deformable touches.
+/// The point at which the deformable touches.
 Vec3d ContactSet::point_of(const Held& contact, Places places) const {
     Vec3d point;
     for (std::size_t k = 0; k < 4; ++k) point += places[contact.particles[k]] * contact.weights[k];

@@ -16,75 +16,77 @@
 
 namespace echinus {
 
-/// In place of the number of an obstacle.
+/// Marks the absence of an obstacle.
 inline constexpr std::uint32_t kNoObstacle = 0xFFFFFFFF;
 
-/// The parts that touch: a pair of a deformable and an obstacle, by its number.
+/// The parts that touch: a pair of a deformable and an obstacle, which is given by its number.
 struct ContactKey {
     std::uint32_t obstacle;
     PairKind kind;
     std::array<std::uint32_t, 4> points;
-    /// That of one particle, the first of its points, lie together.
+    /// The order in which the keys that have the same first point are adjacent.
     auto order() const { return std::tie(points, kind, obstacle); }
 };
 
-/// The energy of contact and friction of pairs whose gap is linear in the places (docs/mechanics.md): a
+/// The energy of contact and friction of pairs whose gap is linear in the positions (docs/mechanics.md): a
 /// barrier that grows as the gap closes (Li et al. 2020), and friction as bristles (Dahl 1968) that bend
-/// elastically until Coulomb's limit and then slip. Bristles last from step to step, so what they hold does
-/// not creep.
+/// elastically until Coulomb's limit and then slip. Bristles last from step to step, so whatever they hold
+/// does not creep.
 class ContactSet : public ContactEnergy {
   public:
     struct Contact {
-        /// Four points of the pair, and the control points of a free collider.
+        /// The four points of the pair and the control points of a free collider.
         static constexpr std::size_t kMostParts = 8;
 
         ContactKey key;
         std::array<std::uint32_t, kMostParts> particles{};
-        std::array<double, kMostParts> weights{}; ///< 0 of what is no unknown
+        std::array<double, kMostParts> weights{}; ///< 0 for points that are not unknowns
         std::size_t part_count = 4;
         Vec3d normal;         ///< of unit length, towards positive weights
-        double offset = 0;    ///< gap = offset + normal . sum of weights * place
-        double thickness = 0; ///< the gap from which on it pushes
+        double offset = 0;    ///< gap = offset + normal . (sum of weight * position)
+        double thickness = 0; ///< the gap below which the contact pushes
         double friction = 0;  ///< Coulomb's coefficient
-        double mobility = 0;  ///< of the gap: sum of weight^2 / mass
-        double yielding = 0;  ///< sum of weight^2 / the force that strains the material there by 1
+        double mobility = 0;  ///< of the gap: the sum of weight^2 / mass
+        double yielding = 0;  ///< the sum of weight^2 / the force that strains the material there by 1
     };
 
-    /// @param obstacle_count  those that contacts name: colliders, then perhaps the deformable itself
-    /// @param collider_count  of them those of which loads are kept
+    /// @param obstacle_count  the number of obstacles that contacts name: the colliders, then possibly the
+    /// deformable itself
+    /// @param collider_count  the number of colliders, whose loads are kept
     ContactSet(std::size_t particle_count, std::size_t obstacle_count, std::size_t collider_count,
                double gravity);
 
-    /// @param masses  [obstacle] of free bodies; 0 of all others @param bodies  [particle] the first one of
-    /// its body
+    /// @param masses  [obstacle] the masses of free bodies; 0 for all others @param bodies  [particle] the
+    /// first particle of its body
     void set_free_bodies(std::vector<double> masses, std::span<const std::uint32_t> bodies);
 
-    /// Begins a frame of one step or more, whose loads are summed.
+    /// Begins a frame of one step or more, over which loads are summed.
     void begin_frame();
-    /// Sums up what its steps have recorded of each contact.
+    /// Sums up the records that the steps of the frame have made of each contact.
     void end_frame();
-    /// Whether steps record the contacts that push.
+    /// Sets whether steps record the contacts that push.
     void record(bool is_on) { records_ = is_on; }
-    /// Of the last frame. After end_frame()
+    /// The contact points of the last frame, after end_frame().
     std::span<const ContactPoint> points() const { return points_; }
-    /// @param frames  [obstacle] of the colliders where the step ends, in which their bristles turn along;
-    /// none of what stands in the world
+    /// @param frames  [obstacle] the frames of the colliders at the end of the step, with which their
+    /// bristles turn; none for obstacles that are fixed in the world
     void begin_step(double step, std::span<const std::optional<FrameChange>> frames);
-    /// Forgets the contacts, not the bristles.
+    /// Removes the contacts, but keeps the bristles.
     void clear() { contacts_.clear(); }
     bool empty() const { return contacts_.empty(); }
-    /// Undoes begin_step(), up to rounding of the bristles' directions. @param frames  those that it was
-    /// given
+    /// Undoes begin_step(), up to rounding in the bristles' directions. @param frames  the same as for
+    /// begin_step()
     void cancel_step(std::span<const std::optional<FrameChange>> frames);
-    /// @param start  the sum of weight * place where the step began, taken along with the obstacle
-    /// @param gap  whose normal force limits its friction; none: that of the step before does
+    /// @param start  the sum of weight * position when the step began, carried along with the obstacle
+    /// @param gap  its normal force limits the friction; if none, the normal force of the step before does
     void add(const Contact& contact, const Vec3d& start, std::optional<double> gap);
-    /// Keeps bristles and loads of the step that ends here. @param is_touching  out: 1 where a contact pushes
+    /// Keeps the bristles and loads of the step, which ends at these positions. @param is_touching  out: 1 if
+    /// a contact pushes the particle
     void end_step(Places places, std::span<const std::optional<FrameChange>> frames,
                   std::span<std::uint8_t> is_touching);
 
-    /// Adds the load of a particle that is stopped by a collider, or held by it.
-    /// @param force  on the particle
+    /// Adds the load of a particle that a collider stops or holds.
+    /// @param force  the force on the particle
     void add_load(std::uint32_t collider, const Vec3d& place, const Vec3d& force,
                   const std::optional<FrameChange>& frame);
 
@@ -92,20 +94,20 @@ class ContactSet : public ContactEnergy {
     void add_derivatives(Places places, std::span<Vec3d> gradient, BlockMatrix* hessian,
                          const Workers& workers) const override;
 
-    /// Contacts that push at these places.
+    /// The number of contacts that push at these positions.
     std::size_t pushing_count(Places places) const;
-    /// The load of the deformable on a collider in this frame, as its mean over so many seconds.
+    /// The load of the deformable on a collider in this frame, averaged over this time.
     Load load_on(std::size_t collider, double seconds) const;
 
-    /// Between steps: turns the bristles of what stands in the world.
+    /// Turns the bristles of an obstacle that is fixed in the world; between steps.
     void turn(std::uint32_t obstacle, const Rotation& turn);
     void archive(StateArchive& state);
 
   private:
     struct Held : Contact {
-        double force;                        ///< of the barrier
-        double stiffness, most_friction = 0; ///< of the bristle
-        Vec3d slip_offset;                   ///< slip = tangential part of this + sum of weights * place
+        double force;                        ///< the force of the barrier
+        double stiffness, most_friction = 0; ///< the stiffness and the Coulomb limit of the bristle
+        Vec3d slip_offset; ///< slip = tangential part of (slip_offset + sum of weight * position)
     };
     /// The forces by which the parts of a contact held each other when the step before ended.
     struct Bristle {
@@ -113,17 +115,18 @@ class ContactSet : public ContactEnergy {
         std::array<float, 4> weights{};
         Vec3d normal, friction; ///< in the obstacle's frame between steps, in the world during one
         double push = 0;        ///< the normal force when the step ended
-        double force = 0;       ///< of the barrier
+        double force = 0;       ///< the force of the barrier
     };
     static constexpr std::uint32_t kNone = 0xFFFFFFFF;
-    /// The bristles around a particle that lie in about the same plane, seen from there.
+    /// The bristles around a particle that lie in about the same plane as seen from the particle.
     struct Patch {
-        std::uint32_t obstacle, next; ///< the next one of the particle
-        Vec3d normal, friction;       ///< the friction weighted, as the push
+        std::uint32_t obstacle, next; ///< the next patch of the particle
+        Vec3d normal, friction;       ///< the friction is weighted like the push
         double push = 0, force = 0, weight = 0;
     };
     struct Impulse {
-        Vec3d linear, angular; ///< the moment about where the collider stood when the frame's last step ended
+        Vec3d linear,
+            angular; ///< the moment is about the position of the collider at the end of the frame's last step
     };
 
     static double push_of(const Held& contact, double gap);
@@ -144,19 +147,20 @@ class ContactSet : public ContactEnergy {
     double gravity_, step_ = 0;
     std::size_t obstacle_count_;
     std::vector<Held> contacts_;
-    std::vector<Bristle> bristles_;            ///< of the step before, by key
-    std::vector<std::uint32_t> first_bristle_; ///< [particle count + 1] those whose first point it is
-    std::vector<std::uint32_t> first_patch_;   ///< [particle] into patches_
-    std::vector<Patch> patches_;               ///< in this step
-    std::vector<double> free_masses_;          ///< [obstacle] none where there are no free bodies
-    std::vector<std::uint32_t> bodies_;        ///< [particle] the same
-    std::vector<double> borne_;     ///< [body, by its first particle] mass of the heaviest free body
-                                    ///< that contacts of the last step connect with it
-    std::vector<Impulse> impulses_; ///< by collider, in this frame
+    std::vector<Bristle> bristles_; ///< of the step before, by key
+    std::vector<std::uint32_t>
+        first_bristle_;                      ///< [particle count + 1] those whose first point is the particle
+    std::vector<std::uint32_t> first_patch_; ///< [particle] an index into patches_
+    std::vector<Patch> patches_;             ///< in this step
+    std::vector<double> free_masses_;        ///< [obstacle] empty if there are no free bodies
+    std::vector<std::uint32_t> bodies_;      ///< [particle] empty as well, or the first particle of its body
+    std::vector<double> borne_;     ///< [body, by its first particle] mass of the heaviest free body that
+                                    ///< contacts of the last step connect with it
+    std::vector<Impulse> impulses_; ///< [collider] in this frame
     /// A contact in one step of the frame.
     struct Recorded {
         ContactKey key;
-        std::uint32_t number; ///< in the order of the steps
+        std::uint32_t number; ///< counted in the order of the steps
         ContactPoint point;
     };
     bool records_ = false;

@@ -74,7 +74,7 @@ Vec3d ContactSide::obstacle_displacement(const Pair& pair, const std::array<doub
     return sum;
 }
 
-/// The motion that all have in common between two states. It changes no gap of the surface to itself.
+/// The mean motion of all vertices between two states, which changes no gap of the surface to itself.
 Vec3f ContactSide::common_motion(const PointArrays& from, const PointArrays& to) const {
     if (!pairs.is_of_itself()) return {};
     Vec3d sum;
@@ -96,9 +96,9 @@ bool ContactSide::mark_others(const PointArrays& reference, const PointArrays& p
     return is_any;
 }
 
-/// The displacements of marked vertices are listed from now on, beside those of the others.
-/// @param starts_there  whether all begin where those do that are listed; else the others stay where those
-/// end
+/// From now on the list contains the displacements of the marked vertices in addition to those of the others.
+/// @param starts_there  whether all displacements begin where the listed ones begin; otherwise the unmarked
+/// vertices are listed as resting where the listed displacements end
 void ContactSide::take_others(bool starts_there) {
     if (!starts_there) listed_from = listed_to;
     listed_from.resize(is_other_.size());
@@ -110,8 +110,8 @@ void ContactSide::take_others(bool starts_there) {
     }
 }
 
-/// Displacements begin and end near those for which pairs are listed, or both near where those end: so it is
-/// after a step. Pairs are looked for only of the vertices that do neither.
+/// After a step, displacements begin and end near those whose pairs are listed, or both begin and end near
+/// where those end. Pairs are searched only for the vertices for which neither is true.
 bool ContactSide::list(Places ends, const Workers& workers) {
     to_frame_ahead(ends, goal);
     bool starts_there = false;

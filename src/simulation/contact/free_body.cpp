@@ -10,11 +10,11 @@ namespace echinus {
 
 namespace {
 
-/// The corners of a regular tetrahedron: the mean of their outer products is the identity.
+/// The corners of a regular tetrahedron; the mean of their outer products is the identity.
 constexpr std::array<Vec3d, FreeBody::kPointCount> kCorners{
     {{1, 1, 1}, {-1, 1, -1}, {1, -1, -1}, {-1, -1, 1}}};
 
-/// Along the principal axes, as long as the standard deviations of the mass along them; right-handed.
+/// The principal axes, as long as the standard deviations of the mass along them; right-handed.
 Matrix3 spread_of(const RigidBody& body) {
     const Eigensystem moments = body.second_moments();
     Matrix3 spread = moments.vectors;
@@ -23,8 +23,8 @@ Matrix3 spread_of(const RigidBody& body) {
     return spread;
 }
 
-/// The rotation that takes unit axes nearest to others, which it nearly does: turns by the axis and the angle
-/// that all three have in common (Mueller et al. 2016).
+/// The rotation that takes unit axes closest to others, to which they nearly fit: found by turning about the
+/// axis and by the angle that all three have in common (Mueller et al. 2016).
 Rotation nearest_rotation(const Matrix3& axes, const Matrix3& turned, Rotation rotation) {
     for (int turn = 0; turn < threshold::kMostFittingTurns; ++turn) {
         Vec3d across;
@@ -91,7 +91,7 @@ void FreeBody::put(const RigidTransform& pose, std::span<Vec3d> places) const {
 RigidTransform FreeBody::fit(std::span<const Vec3d> places, const RigidTransform& near) const {
     const auto points = places.subspan(first_point_, kPointCount);
     const std::array<Vec3d, kPointCount> of_near = points_at(near);
-    if (std::equal(points.begin(), points.end(), of_near.begin())) return near; // to the bit
+    if (std::equal(points.begin(), points.end(), of_near.begin())) return near; // bitwise equal
     Vec3d middle;
     for (const Vec3d& point : points) middle += point * (1.0 / kPointCount);
     Matrix3 axes{}, turned{};

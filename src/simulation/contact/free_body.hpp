@@ -11,10 +11,10 @@
 
 namespace echinus {
 
-/// A rigid body as unknowns of a step: four control points, each of a quarter of its mass, with the body's
-/// centre of mass and inertia, and a stiff tetrahedron between them (affine bodies, Lan et al. 2022). They
-/// follow the particles of the deformable, and contacts act on them as on particles. So both sides of a
-/// contact are solved together, and neither is moved by the forces of the step before.
+/// A rigid body as unknowns of a step: four control points with a quarter of its mass each, which have the
+/// body's centre of mass and inertia, and a stiff tetrahedron between them (affine bodies, Lan et al. 2022).
+/// They come after the particles of the deformable, and contacts act on them as on particles. So both sides
+/// of a contact are solved together, and neither is moved by forces of the step before.
 class FreeBody {
   public:
     static constexpr std::size_t kPointCount = 4;
@@ -28,26 +28,27 @@ class FreeBody {
     /// Does it represent this collider, with this mass, centre of mass and inertia?
     bool is_of(std::uint32_t collider, const RigidBody& body) const;
     /// Appends the control points and their tetrahedron.
-    /// @param time_step  the longest step, s
+    /// @param time_step  the longest step, in seconds
     void add_to(ElasticParts& parts, double time_step) const;
 
-    /// Sets the places of the control points to those in a pose.
+    /// Sets the positions of the control points to those in a pose.
     void put(const RigidTransform& pose, std::span<Vec3d> places) const;
-    /// The rigid pose that is nearest to the places of the control points. @param near  a pose close to it
+    /// The rigid pose nearest to the control points. @param near  a pose close to it
     RigidTransform fit(std::span<const Vec3d> places, const RigidTransform& near) const;
-    /// The load by which the safe pose ends a step other than inertia and gravity alone would have ended it;
-    /// about the translation of the safe pose. @param led  the pose to which those two lead
+    /// The load that explains why a step ended in the safe pose and not where inertia and gravity alone would
+    /// have led; about the translation of the safe pose. @param led  the pose to which these would have led
     Load load(const RigidTransform& led, double seconds) const;
 
-    /// Makes a contact act on the control points, too. @param point  where it touches the body, in the world
-    /// @param start_apart  as `start` of ContactSet::add(): of the deformable's part in, relative to the body
-    /// out
+    /// Makes a contact act on the control points as well. @param point  where it touches the body, in the
+    /// world
+    /// @param start_apart  like `start` of ContactSet::add(). In: for the deformable's part. Out: relative to
+    /// the body
     void join(ContactSet::Contact& contact, Vec3d& start_apart, const Vec3d& point) const;
 
-    RigidTransform start_pose; ///< when the step began
+    RigidTransform start_pose; ///< at the beginning of the step
     RigidTransform safe_pose;  ///< in the safe state
     RigidTransform goal_pose;  ///< at the end of the displacement that is examined
-    bool is_stopped = false;   ///< by something that cannot yield
+    bool is_stopped = false;   ///< stopped by something that cannot yield
 
   private:
     std::array<Vec3d, kPointCount> points_at(const RigidTransform& pose) const;

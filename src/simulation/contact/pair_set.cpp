@@ -11,7 +11,7 @@ namespace echinus {
 namespace {
 
 constexpr std::size_t kPairsPerPiece = 512;
-/// Pairs are sorted by their gaps in so many steps.
+/// The number of classes into which pairs are sorted by their gaps.
 constexpr std::size_t kGapSteps = 64;
 
 bool comes_before(const Pair& a, const Pair& b) {
@@ -65,7 +65,7 @@ void PairSet::list(const Displacements& displacements, std::span<const std::uint
         return !is_affected(pair) || std::binary_search(known.begin(), known.end(), pair, comes_before);
     });
     measure_new(own_from, obstacle_from, workers);
-    // Behind them those that stay.
+    // They are followed by the pairs that stay.
     const std::size_t found_count = near_.size();
     for (std::size_t p = 0; p < listed_.size(); ++p) {
         if (!starts_there && is_affected(listed_[p])) continue;
@@ -108,9 +108,9 @@ float PairSet::closing_of(const Pair& pair, const Vec3f& normal, const Displacem
     return most[0] + most[1];
 }
 
-/// Takes what was found and measured as the list, the nearest first: then a call that needs only those ends
-/// early. Pairs that stay apart along their own normal are left out. @param kept_count  of the last ones,
-/// which stay in any case
+/// Makes the pairs that were found and measured the list, the nearest first, so that a call that needs only
+/// these ends early. Pairs that stay apart along their own normal are left out. @param kept_count  the number
+/// of last pairs, which stay in any case
 void PairSet::list_measured(const Displacements& displacements, std::size_t kept_count) {
     std::array<std::size_t, kGapSteps + 1> first{};
     float largest = 0;
@@ -154,7 +154,7 @@ void PairSet::measure(const Course& course, const PointArrays& obstacle, float n
         std::fill(is_near_.begin(), is_near_.end(), std::uint8_t{0});
     }
     const auto nearer_at = [&](std::uint32_t v) { return course.strayed[v] + 2 * course.ahead[v]; };
-    // No pair is nearer by more than what two vertices could do to it.
+    // No pair comes nearer by more than twice the most that a single vertex can contribute.
     float most = 0;
     for (std::uint32_t v = 0; v < course.strayed.size(); ++v) most = std::max(most, nearer_at(v));
     const float last = near + 2 * (most + gap_step_);
@@ -175,7 +175,8 @@ void PairSet::measure(const Course& course, const PointArrays& obstacle, float n
     measure_new(course.now, obstacle, workers);
 }
 
-/// By how much the parts of a pair of itself can have come nearer, at most: by what they do not do together.
+/// The most by which the two parts of a pair of the surface with itself can have come nearer: only their
+/// relative motion counts.
 float PairSet::nearer_by(const Pair& pair, const Course& course) const {
     float strayed_sq = 0, ahead_sq = 0;
     const auto add = [](float& most_sq, const Vec3f& v) { most_sq = std::max(most_sq, dot(v, v)); };
@@ -191,7 +192,7 @@ float PairSet::nearer_by(const Pair& pair, const Course& course) const {
     return std::sqrt(strayed_sq) + 2 * std::sqrt(ahead_sq);
 }
 
-/// Measures those of `near_` that are not.
+/// Measures the pairs of `near_` that are not measured yet.
 void PairSet::measure_new(const PointArrays& own, const PointArrays& obstacle, const Workers& workers) {
     const std::size_t first = separations_.size();
     separations_.resize(near_.size());

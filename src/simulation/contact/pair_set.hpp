@@ -17,62 +17,64 @@
 
 namespace echinus {
 
-/// The pairs of a vertex and a face or of two edges, of a deformable's surface and an obstacle or of the
-/// surface and itself, that could meet in a step, and how far apart they are.
+/// The pairs of a vertex and a face or of two edges that could meet in a step, and their distances. They are
+/// pairs of a deformable's surface and an obstacle, or of the surface and itself.
 ///
-/// Pairs are listed along straight displacements from where all are safe. One that is not listed is farther
+/// Pairs are listed along straight displacements from a safe state. A pair that is not listed is farther
 /// apart than the reach at both ends of the displacements, on the same side along an axis; so it does not
-/// meet as long as every vertex ends within covered() of where it was expected. Of those that are listed,
-/// only those are measured again that the displacements since then may have brought near.
+/// meet as long as every vertex ends within covered() of its expected position. Of the listed pairs, only
+/// those that the displacements since then may have brought near are measured again.
 class PairSet {
   public:
-    /// @param own_places, obstacle_places  by which elements that are near each other are grouped
+    /// @param own_places, obstacle_places  positions by which nearby elements are grouped
     PairSet(std::shared_ptr<const Elements> own, const PointArrays& own_places,
             std::shared_ptr<const Elements> obstacle, const PointArrays& obstacle_places);
-    /// Of the surface and itself.
+    /// The pairs of the surface and itself.
     PairSet(std::shared_ptr<const Elements> own, const PointArrays& places);
 
-    /// All lengths: pairs that come so near are listed.
+    /// Sets the distance within which pairs are listed; all lengths are in its unit.
     void set_reach(float reach) { reach_ = reach; }
-    /// How far the end of a vertex may be from where it was expected.
+    /// How far a vertex may end from its expected position.
     float covered() const { return reach_ / 4; }
 
-    /// Displacements of the surface and of the obstacle; of itself both are the surface's. An obstacle with
-    /// the same array twice never moves.
+    /// The displacements of the surface and of the obstacle; for the surface and itself, both are the
+    /// surface's. An obstacle never moves if it has the same array twice.
     struct Displacements {
         const PointArrays &own_from, &own_to, &obstacle_from, &obstacle_to;
     };
-    /// Lists the pairs that come near on the displacements, and measures them where the displacements begin.
-    /// @param is_other  [vertex] 1 for those whose displacements have become others: their pairs are looked
-    /// for, and those of other vertices stay listed
-    /// @param starts_there  whether the displacements begin where those did that are listed: then all pairs
-    /// stay listed, so that a search for ends that the list covers comes to an end
+    /// Lists the pairs that come near during the displacements, and measures them at the beginning.
+    /// @param is_other  [vertex] 1 for vertices whose displacements have changed: their pairs are searched,
+    /// and those of other vertices stay listed
+    /// @param starts_there  whether the displacements begin where the listed ones begin: then all pairs stay
+    /// listed, so that a search for positions that the list covers terminates
     void list(const Displacements& displacements, std::span<const std::uint8_t> is_other, bool starts_there,
               const Workers& workers);
 
-    /// The obstacle is elsewhere than when pairs were listed.
+    /// The obstacle has moved since pairs were listed.
     void forget_obstacle() { obstacle_stands_ = false; }
-    /// The course of the surface's vertices: where their pairs were listed, where they are now, and where two
-    /// displacements lead from there.
+    /// The course of the surface's vertices: their positions when pairs were listed, their positions now, and
+    /// the ends of two displacements from there.
     struct Course {
         const PointArrays &listed, &now, &base, &goal;
-        std::span<const float> strayed, ahead; ///< [vertex] how far, at most, and along both
+        std::span<const float> strayed,
+            ahead; ///< [vertex] the most that it has moved since then, and that both displacements lead it
     };
-    /// Measures the pairs that may be nearer than `near`, or of which displacements may close half of the
-    /// gap.
-    /// @param is_elsewhere  whether vertices have moved since the last call; else what was measured stays
+    /// Measures the pairs that may be nearer than `near`, and those whose gaps the displacements may close by
+    /// half.
+    /// @param is_elsewhere  whether vertices have moved since the last call; if not, earlier measurements are
+    /// kept
     void measure(const Course& course, const PointArrays& obstacle, float near, bool is_elsewhere,
                  const Workers& workers);
 
     void archive(StateArchive& state);
 
     bool is_of_itself() const { return own_ == obstacle_; }
-    /// Those that were measured.
+    /// The pairs that were measured.
     std::span<const Pair> pairs() const { return near_; }
     /// [pairs().size()]
     std::span<const Separation> separations() const { return separations_; }
     std::size_t listed_count() const { return listed_.size(); }
-    /// Of a pair, the points that are the deformable's: all four of itself.
+    /// The number of points of a pair that belong to the deformable: all four for the surface and itself.
     std::size_t moving_count(const Pair& pair) const { return is_of_itself() ? 4 : own_count(pair.kind); }
 
   private:
@@ -84,14 +86,14 @@ class PairSet {
 
     std::shared_ptr<const Elements> own_, obstacle_;
     float reach_ = 0;
-    MovingTree own_tree_, obstacle_tree_;                                  ///< the second unused of itself
-    bool obstacle_stands_ = false;                                         ///< is its tree up to date?
+    MovingTree own_tree_, obstacle_tree_; ///< the second is unused for the surface and itself
+    bool obstacle_stands_ = false;        ///< whether its tree is up to date
     std::vector<std::vector<std::array<std::uint32_t, 2>>> near_elements_; ///< by worker
     PiecewiseList<Pair> found_;
     std::vector<Pair> listed_;
-    std::vector<float> listed_gaps_; ///< where the displacements began; within a step ascending
+    std::vector<float> listed_gaps_; ///< at the beginning of the displacements; ascending up to gap_step_
     float gap_step_ = 0;
-    std::vector<std::uint8_t> is_near_; ///< [listed] 1 for those that are in near_
+    std::vector<std::uint8_t> is_near_; ///< [listed] 1 for pairs in near_
     std::vector<Pair> near_;
     std::vector<Separation> separations_;
 };

@@ -48,7 +48,7 @@ void ParticleContacts::Answers::resize(std::size_t count) {
     inside.resize(count);
 }
 
-/// All that is found inside, or outside within a margin.
+/// Finds all particles that are inside, or outside within a margin.
 void ParticleContacts::find(Places places, double margin) {
     const auto ask = [&](const ContactArrays<double>& contacts) {
         return contacts_into(after_, StridedSpan<const Vec3d>(places), static_cast<float>(margin), contacts);
@@ -76,7 +76,7 @@ void ParticleContacts::find(Places places, double margin) {
     }
 }
 
-/// Where the collider takes a particle from where the step began.
+/// Where the collider carries a particle from its position at the beginning of the step.
 Vec3d ParticleContacts::carried(std::uint32_t particle, std::uint32_t obstacle) const {
     const RigidTransform &before = before_[obstacle].pose, &after = after_[obstacle].pose;
     const Vec3d start = start_[particle];
@@ -84,9 +84,9 @@ Vec3d ParticleContacts::carried(std::uint32_t particle, std::uint32_t obstacle) 
     return start + (after.to_world(material) - before.to_world(material));
 }
 
-/// Is a particle deeper than it moved, although it began outside? Then it came through no surface that the
-/// map knows: at a silhouette neighbouring directions of a distance map differ in their number of layers, and
-/// along the ray the way out may be far from the way in.
+/// Is a particle deeper than the distance it moved, although it began outside? Then it came through no
+/// surface that the map knows: at a silhouette, neighbouring directions of a distance map differ in their
+/// number of layers, and the way out along the ray may be far from the way in.
 bool ParticleContacts::came_through_a_side(const Found& found, const Vec3d& place) const {
     const auto order = [](const Inside& a, const Inside& b) {
         return std::tie(a.obstacle, a.particle) < std::tie(b.obstacle, b.particle);
@@ -108,7 +108,7 @@ void ParticleContacts::add_to(ContactSet& contacts, Places places, std::span<con
         if (came_through_a_side(found, place)) continue;
         ContactSet::Contact contact;
         contact.normal = found.normal;
-        // Inside, and in front of the plane all the same: out along the ray, as the paper has it.
+        // The particle is inside and yet in front of the plane: it leaves along the ray, as in the paper.
         if (found.inside && dot(found.normal, place - found.point) >= 0) contact.normal = found.point - place;
         const double size = length(contact.normal);
         if (!(size > 0)) continue;
@@ -162,7 +162,8 @@ bool ParticleContacts::put_outside(std::span<Vec3d> places, std::span<std::uint8
 void ParticleContacts::end_step(const std::vector<Collider>& after, Places places,
                                 std::span<Vec3d> velocities, double step) {
     for (std::size_t o = 0; o < obstacles_.size(); ++o) after_[o] = after[obstacles_[o].number];
-    for (auto put = put_.rbegin(); put != put_.rend(); ++put) // of each particle the first is the last word
+    for (auto put = put_.rbegin(); put != put_.rend();
+         ++put) // backwards, so that the first entry of a particle decides
         velocities[put->particle] = (put->from - start_[put->particle]) * (1 / step);
     for (const Inside& inside : began_inside_) keep_with_surface(inside, places, velocities);
     for (const Put& put : put_) {
@@ -173,7 +174,7 @@ void ParticleContacts::end_step(const std::vector<Collider>& after, Places place
     }
 }
 
-/// Takes the part of a velocity that leads into the collider or out of it.
+/// Makes the component of a velocity across the collider's surface that of the surface.
 void ParticleContacts::keep_with_surface(const Inside& inside, Places places,
                                          std::span<Vec3d> velocities) const {
     const Collider& collider = after_[inside.obstacle];

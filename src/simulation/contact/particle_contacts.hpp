@@ -14,41 +14,43 @@
 
 namespace echinus {
 
-/// Contact of a deformable's particles with colliders that have no faces for it: the paper's distance map, a
-/// user's own map, and exact maps where surfaces do not collide. A particle is a contact with the plane that
-/// the map answers with; nothing is proven. A particle that ends inside all the same is put outside, as the
-/// paper has it, and keeps no velocity into the collider or out of it.
+/// Contact of a deformable's particles with colliders without usable faces: the paper's distance maps, a
+/// user's own maps, and exact maps if surfaces do not collide. A particle is in contact with the plane that
+/// the map returns; nothing is proven. A particle that nevertheless ends inside is put outside, as in the
+/// paper, and keeps no velocity across the collider's surface.
 class ParticleContacts {
   public:
-    /// @param collides  [collider] 1 for those that particles collide with
+    /// @param collides  [collider] 1 for colliders with which particles collide
     ParticleContacts(const Deformable& deformable, const std::vector<Collider>& colliders,
                      std::span<const std::uint8_t> collides, double thickness, double friction);
 
     bool empty() const { return obstacles_.empty(); }
 
-    /// @param before, after  the colliders where the step begins, and where it ends
-    /// @param start    where particles are when it begins
+    /// @param before, after  the colliders at the beginning and at the end of the step
+    /// @param start    the positions of particles at the beginning
     /// @param is_held  [particle]
     void begin_step(const std::vector<Collider>& before, const std::vector<Collider>& after, Places start,
                     std::span<const std::uint8_t> is_held);
-    /// A free body has gone there in the step.
+    /// A free body has moved to this pose in the step.
     void move(std::uint32_t collider, const RigidTransform& pose);
-    /// Adds the contacts at these places. @param strengths, is_solved  as SurfaceContacts::find_contacts()
+    /// Adds the contacts at these positions. @param strengths, is_solved  as in SurfaceContacts
     void add_to(ContactSet& contacts, Places places, std::span<const double> masses,
                 std::span<const double> strengths, std::span<const FreeBody> free_bodies, bool is_solved);
-    /// Puts particles that are inside outside.
-    /// @param is_put  [particle] out: 1 for those
+    /// Puts particles that are inside a collider outside.
+    /// @param is_put  [particle] out: 1 for particles that were put outside
     /// @return whether there were any
     bool put_outside(std::span<Vec3d> places, std::span<std::uint8_t> is_put);
-    /// The velocities of those that were put outside do not count that displacement; of them, and of those
-    /// that began the step inside a collider, the part across its surface is the collider's.
-    /// @param after  the colliders as the step has left them: free bodies with their velocities
+    /// The velocities of particles that were put outside do not include that displacement. For them and for
+    /// particles that began the step inside a collider, the component across its surface becomes the
+    /// collider's.
+    /// @param after  the colliders at the end of the step; free bodies with their new velocities
     void end_step(const std::vector<Collider>& after, Places places, std::span<Vec3d> velocities,
                   double step);
 
-    /// Queries of maps since the last call, one for each particle and collider.
+    /// The number of queries of maps since the last call, one for each particle and collider.
     std::uint64_t take_query_count() { return std::exchange(query_count_, 0); }
-    /// Particles since the last call that ended a step inside: maps that overlap leave them no place.
+    /// The number of particles since the last call that ended a step inside a collider: overlapping maps
+    /// leave them no room.
     std::uint64_t take_lost_count() { return std::exchange(lost_count_, 0); }
 
   private:
@@ -63,7 +65,7 @@ class ParticleContacts {
         double depth;
         bool inside;
     };
-    /// The arrays that are asked for.
+    /// The arrays for the answers of a query.
     struct Answers {
         std::vector<std::uint32_t> particles, colliders;
         std::vector<Vec3d> points;

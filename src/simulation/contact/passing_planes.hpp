@@ -9,19 +9,19 @@
 
 namespace echinus {
 
-/// The parts of a pair, one of which goes past the other: the plane across the shortest distance between them
-/// then stands in the way, though another one, along the displacement, separates them all the time.
+/// The parts of a pair that pass each other. The plane across the shortest distance between them is then in
+/// the way, although another plane, along the displacement, may separate them all the time.
 template <typename T>
 struct PassingParts {
     PairKind kind;
-    std::array<Vec3<T>, 4> points; ///< of the pair, where its displacement begins
+    std::array<Vec3<T>, 4> points; ///< of the pair, at the beginning of its displacement
     Vec3<T> normal;                ///< across the shortest distance, of unit length
-    Vec3<T> ahead;                 ///< how far the first part goes, seen from the second
+    Vec3<T> ahead;                 ///< the displacement of the first part relative to the second
 
-    /// Normals of planes that may separate them: along the displacement and an edge, or that of the face or
-    /// of both edges (the axes that separate swept polyhedra, Gottschalk et al. 1996), and the given one
-    /// turned to be along the displacement, or along one of two edges, which may be parallel. Of unit length,
-    /// towards the first part; zero where there is none.
+    /// The unit normals of planes that may separate the parts, towards the first part; zero if there is none.
+    /// These planes are along the displacement and an edge, along the face or along both edges (the axes that
+    /// separate swept polyhedra, Gottschalk et al. 1996); further ones are the given plane turned to be along
+    /// the displacement or along one of two edges, which may be parallel.
     std::array<Vec3<T>, 6> normals() const {
         const auto edge = [&](std::size_t a, std::size_t b) { return points[b] - points[a]; };
         const auto turned_along = [&](const Vec3<T>& direction) {
@@ -48,7 +48,7 @@ struct PassingParts {
         return result;
     }
 
-    /// How far apart the parts are along a normal; negative where it does not separate them.
+    /// The distance between the parts along a normal; negative if it does not separate them.
     T gap_along(const Vec3<T>& across) const {
         T nearest = std::numeric_limits<T>::infinity(), farthest = -nearest;
         for (std::size_t k = 0; k < 4; ++k) {

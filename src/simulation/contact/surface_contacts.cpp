@@ -23,13 +23,13 @@ float least_height_of(const Element& element, std::span<const Vec3f> positions) 
     return longest > 0 ? length(cross(b - a, c - a)) / longest : 0;
 }
 
-/// At rest: a barycentric coordinate falls from 1 to 0 along a height.
+/// The height at rest: a barycentric coordinate falls from 1 to 0 along a height.
 float least_height_of(const ElasticTetrahedron& tetrahedron) {
     const auto& [b, c, d] = tetrahedron.gradients;
     return 1 / std::max({length(b), length(c), length(d), length(b + c + d)});
 }
 
-/// [collider] 1 for those whose faces do not collide: only particles keep out of them.
+/// [collider] 1 for colliders whose faces do not collide: only particles are kept out of them.
 std::vector<std::uint8_t> without_faces(const std::vector<Collider>& colliders,
                                         const SimulationOptions& options) {
     std::vector<std::uint8_t> result;
@@ -38,7 +38,7 @@ std::vector<std::uint8_t> without_faces(const std::vector<Collider>& colliders,
     return result;
 }
 
-/// The normal of a contact. Where its parts go farther than they are apart, they may pass each other.
+/// The normal of a contact. If its parts move farther than their distance, they may pass each other.
 Vec3d normal_of(const PassingParts<double>& parts, double distance) {
     const double closing = -dot(parts.normal, parts.ahead);
     if (!(closing > 0) || !(dot(parts.ahead, parts.ahead) > distance * distance)) return parts.normal;
@@ -234,9 +234,9 @@ void SurfaceContacts::begin_step(const std::vector<Collider>& colliders, const P
     find_contacts(guess, false);
 }
 
-/// Of displacements to goals the ends as far as the planes between the pairs allow.
+/// The ends of displacements towards goals, as far as the planes between the pairs allow.
 /// @param places  in: the goals. Out: the ends
-/// @return whether nothing meets on the way to the ends, but what is counted as unresolved
+/// @return whether nothing meets on the way to the ends, except the pairs counted as unresolved
 bool SurfaceContacts::find_ends(std::span<Vec3d> places, const PushRules& rules, const Workers& workers) {
     const ScratchVector<Vec3d> goals(places.begin(), places.end(), workers.scratch());
     SafeDisplacements displacements(sides_, goals, rules, workers);
@@ -254,7 +254,8 @@ bool SurfaceContacts::find_ends(std::span<Vec3d> places, const PushRules& rules,
     return false;
 }
 
-/// Marks free bodies that would close a pair although its particles have been pushed: those are held.
+/// Marks the free bodies that would still close a pair after its particles have been pushed, because these
+/// are held.
 /// @return whether there are any
 bool SurfaceContacts::meets_what_cannot_yield(const SafeDisplacements& displacements) {
     bool is_any = false;
@@ -273,7 +274,7 @@ FreeBody* SurfaceContacts::free_body_of(std::uint32_t collider) {
     return nullptr;
 }
 
-/// Sets the goals of free bodies to the rigid poses that are nearest to those of their control points.
+/// Sets the goals of free bodies to the rigid poses that fit the goals of their control points best.
 /// @param goals  in, out
 void SurfaceContacts::head_for(std::span<Vec3d> goals) {
     for (FreeBody& body : free_bodies_) {
@@ -284,7 +285,7 @@ void SurfaceContacts::head_for(std::span<Vec3d> goals) {
         if (const FreeBody* const body = free_body_of(side.number)) side.head_for(body->goal_pose);
 }
 
-/// The goals of free bodies are safe.
+/// Makes the goals of free bodies their safe poses.
 void SurfaceContacts::arrive() {
     for (FreeBody& body : free_bodies_) {
         body.safe_pose = body.goal_pose;
@@ -294,9 +295,9 @@ void SurfaceContacts::arrive() {
         if (const FreeBody* const body = free_body_of(side.number)) side.set_pose(body->safe_pose);
 }
 
-/// Marks what did not reach its goal, and the free bodies that stopped it. @param is_stopped  [body] set
-/// to 1 where any of it did not
-/// @return how many particles did not, and whether they belong to bodies that were not marked
+/// Marks the bodies of particles that did not reach their goals, and the free bodies that stopped them.
+/// @param is_stopped  [body] set to 1 if any part of it was stopped
+/// @return the number of stopped particles and bodies, and whether any of their bodies had not been marked
 SurfaceContacts::Stopped SurfaceContacts::mark_stopped(Places goals, Places ends,
                                                        std::span<std::uint8_t> is_stopped,
                                                        const Workers& workers) {
@@ -324,13 +325,14 @@ SurfaceContacts::Stopped SurfaceContacts::mark_stopped(Places goals, Places ends
     return stopped;
 }
 
-/// Goes from the safe state towards goals as far as the planes between the pairs allow. Bodies of which any
-/// particle is stopped go less far, where too little room or ever more pairs are found, or where what is
-/// stopped strains what goes on beside it so that energy rises: first but for what all of a body have in
-/// common, and then as a whole, since what lies on something is in the way of that; at last what is not held
-/// stays, and the others go around it.
+/// Goes from the safe state towards goals as far as the planes between the pairs allow. A body of which any
+/// particle is stopped is moved less far if there is too little room, if listing pairs does not end, or if
+/// the stops strain the rest of the body so that the energy rises. First its displacements relative to the
+/// common displacement of the body are shortened, then its whole displacement, because the body may be in the
+/// way of others that rest on it. In the end all of it except held particles stays where it is, and the
+/// others move around it.
 /// @param places  in: the goals. Out: the new safe state, whose pairs are not measured yet
-/// @return how many particles were stopped
+/// @return how many particles and free bodies were stopped
 std::size_t SurfaceContacts::go_towards(std::span<Vec3d> places, const StepEnergy& energy,
                                         const Workers& workers) {
     constexpr int kFirstOfAll = threshold::kMostHalvings,
@@ -361,7 +363,8 @@ std::size_t SurfaceContacts::go_towards(std::span<Vec3d> places, const StepEnerg
         const Stopped stopped = mark_stopped(goals, places, is_stopped, workers);
         most_stopped = std::max(most_stopped, stopped.count);
         if (is_safe && most_stopped == 0) break;
-        // Less of all helps against strain. Where there is too little room it takes long, and does not.
+        // Shortening the whole displacement helps against strain. If there is too little room, it takes long
+        // and does not help.
         if (!is_safe && share > 0 && halvings + 1 >= kFirstOfAll) halvings = kFirstWithout - 1;
         if (share == 0) {
             if (halvings == kLast || (is_safe && !stopped.is_any_new)) break;
@@ -407,9 +410,9 @@ void SurfaceContacts::renew() {
     find_contacts(goals_, true);
 }
 
-/// @param goals  where particles may go: contacts that push there are ready
-/// @param is_solved  whether contact forces here are those of the step, and limit friction; else those of
-/// the step before do
+/// @param goals  where particles may go: contacts that push there are included
+/// @param is_solved  whether the contact forces at the current gaps are those of the step and limit friction;
+/// otherwise those of the step before do
 void SurfaceContacts::find_contacts(Places goals, bool is_solved) {
     contacts_.clear();
     for (const ContactSide& side : sides_) add_contacts(side, goals, is_solved);
@@ -426,8 +429,7 @@ float SurfaceContacts::thickness_of(const ContactSide& side, const Pair& pair) c
     return thickness;
 }
 
-/// How far a pair's nearest points were apart when the step began, as the obstacle has taken them along
-/// since.
+/// The difference between a pair's nearest points when the step began, carried along with the obstacle since.
 Vec3d SurfaceContacts::slip_start(const ContactSide& side, const Pair& pair,
                                   const std::array<double, 4>& shares) const {
     const std::size_t own = own_count(pair.kind), moving = side.pairs.moving_count(pair);
@@ -448,7 +450,7 @@ void SurfaceContacts::add_contacts(const ContactSide& side, Places goals, bool i
         if (!(separations[p].gap > 0)) continue;
         const std::size_t own = own_count(pair.kind), moving = side.pairs.moving_count(pair);
         const double thickness{thickness_of(side, pair)};
-        // The proven gap may be less than the distance by a tenth: it decides what is measured again in
+        // The proven gap may be a tenth less than the distance; it decides which pairs are measured again in
         // double.
         double approach = 0;
         std::array<Vec3d, 4> displacements;
@@ -515,7 +517,7 @@ bool SurfaceContacts::stops() const {
 void SurfaceContacts::add_loads(Places places, std::span<const Vec3d> forces,
                                 std::span<const std::uint32_t> held_by, const Workers& workers) {
     if (collider_count_ == 0) return;
-    // Where stops have shortened the step of a body, those beside the stopped ones are stopped, too.
+    // If stops have shortened the step of a body, its particles next to the stopped ones are stopped as well.
     ScratchVector<std::size_t> stops(bodies_.size() * collider_count_, workers.scratch());
     for (std::size_t i = 0; i < bodies_.size(); ++i)
         if (stopped_by_[i] < collider_count_) ++stops[bodies_[i] * collider_count_ + stopped_by_[i]];
