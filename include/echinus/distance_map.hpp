@@ -68,7 +68,7 @@ struct DistanceMapOptions {
 
 /// Statistics of the build, stored with the map.
 struct DistanceMapStatistics {
-    std::uint32_t face_count = 0; ///< of the mesh
+    std::uint32_t face_count = 0; ///< the number of the mesh's faces
     std::uint32_t dropped_faces =
         0; ///< faces with two corners at one point of the lattice, which have no area there
     std::uint32_t max_entries = 0;       ///< largest number of entries of one direction

@@ -54,7 +54,7 @@ struct ExactMapOptions {
 
 /// Statistics of the build, stored with the map.
 struct ExactMapStatistics {
-    std::uint32_t face_count = 0; ///< of the mesh
+    std::uint32_t face_count = 0; ///< the number of the mesh's faces
     /// Faces with two corners at one point of the lattice, which have no area there. They are used for
     /// distances only.
     std::uint32_t dropped_faces = 0;

@@ -53,7 +53,7 @@ AnyMap load_map(std::span<const std::byte> bytes, std::shared_ptr<const void> st
                 const std::string& name);
 
 /// load_map() for a file that must hold this kind of map.
-/// @throws Error as above, and WrongFormat for a map of another kind
+/// @throws Error as load_map() does, and WrongFormat for a map of the other kind
 DistanceMap load_distance_map(const std::filesystem::path& path);
 ExactMap load_exact_map(const std::filesystem::path& path);
 

@@ -61,7 +61,7 @@ MeshAndEdges read_mesh_and_edges(const std::filesystem::path& path);
 /// in STL) or as doubles (PLY). The file is written under a temporary name in the target's folder and then
 /// renamed, so a failure leaves no partial file and keeps the old one.
 ///
-/// @throws Error Unwritable, WrongFormat for another extension, or InvalidMesh as inspect() does
+/// @throws Error Unwritable, WrongFormat for any other extension, or InvalidMesh as inspect() does
 void write_mesh(const std::filesystem::path& path, const TriangleMesh& mesh);
 
 /// Writes a mesh and its edges, as lines of an OBJ. Other formats are allowed only without edges.
@@ -95,7 +95,7 @@ TetrahedraFile read_tetrahedra(const std::filesystem::path& path);
 /// the same bits when they are read back; a mesh with an origin is written as doubles in the file's frame.
 /// The file is replaced as in write_mesh().
 ///
-/// @throws Error Unwritable, WrongFormat for another extension, or InvalidMesh as
+/// @throws Error Unwritable, WrongFormat for any other extension, or InvalidMesh as
 /// require_valid_tetrahedra() does
 void write_tetrahedra(const std::filesystem::path& path, const TetrahedralMesh& mesh);
 

@@ -125,8 +125,9 @@ TetrahedralReport inspect_tetrahedra(const TetrahedralMesh& mesh);
 /// The distances between the boundary of a body and the surface of a model, at samples on both: the corners
 /// of their faces, and points between them with a spacing of at most the mean edge length of the boundary.
 struct BoundaryDistance {
-    double mean_to_model = 0, greatest_to_model = 0;       ///< from the boundary to the model's surface
-    double mean_to_boundary = 0, greatest_to_boundary = 0; ///< from the model's surface to the boundary
+    double mean_to_model = 0, greatest_to_model = 0; ///< distances from the boundary to the model's surface
+    double mean_to_boundary = 0,
+           greatest_to_boundary = 0; ///< distances from the model's surface to the boundary
 };
 
 /// Measures the distances of BoundaryDistance.

@@ -63,9 +63,8 @@ inline constexpr Colour kScale[] = {
 struct RenderedObject {
     TriangleMesh mesh; ///< world frame, any unit
     Colour colour = palette::kClay;
-    std::vector<Colour> face_colours; ///< [face_count] in place of `colour`, or empty
-    std::optional<Colour>
-        back_colour; ///< of the side on which faces are clockwise; by default that of the front
+    std::vector<Colour> face_colours;        ///< [face_count] in place of `colour`, or empty
+    std::optional<Colour> back_colour;       ///< of the clockwise side of faces; by default that of the front
     std::vector<std::uint32_t> marked_faces; ///< drawn in palette::kMark on both sides
     /// Edges look smooth if the angle between their faces is smaller than this, and sharp otherwise. With 0
     /// every face looks flat.

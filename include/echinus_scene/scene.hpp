@@ -97,7 +97,7 @@ struct SceneBody {
 /// empty.
 struct ClothMeshes {
     TriangleMesh mesh, rest_mesh;
-    std::vector<std::array<std::uint32_t, 2>> threads{}; ///< of `mesh`: see read_mesh_and_edges()
+    std::vector<std::array<std::uint32_t, 2>> threads{}; ///< the threads of `mesh`: see read_mesh_and_edges()
     std::vector<TetrahedralMesh> bodies{};               ///< one for each body; surfaces are already filled
 };
 
@@ -112,7 +112,7 @@ struct CacheFile {
 struct SceneCollider {
     SceneModel model;
     RepairOptions repair; ///< for the mesh, before the map is built
-    RigidTransform pose;  ///< at the start
+    RigidTransform pose;  ///< the initial pose
     Vec3d scale{1, 1, 1}; ///< along the axes of the mesh
     Vec3d linear_velocity;
     Vec3d angular_velocity;         ///< radians per second
