@@ -509,7 +509,7 @@ def test_a_mesh_file_that_has_changed_is_labelled_anew(own_folder, tmp_path, for
     ech.write_mesh(mesh, ech.make_box((1, 1, 7), 2))
     os.utime(mesh, ns=(before.st_atime_ns, before.st_mtime_ns))
     assert mesh.stat().st_size == before.st_size  # neither its date nor its size tells
-    assert corpus.verify(corpus_in("labels")) == [f"box_2: {mesh} has changed since it was labelled; the same command without --verify labels it anew"]
+    assert corpus.verify(corpus_in("labels")) == [f"box_2: {mesh} has changed since it was labelled; the same command without --verify labels it again"]
     summary = corpus.label(corpus_in("labels"), workers=1)
     assert (summary.already, summary.labelled) == (2, 1)
     assert corpus.verify(corpus_in("labels")) == []

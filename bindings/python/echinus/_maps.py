@@ -241,9 +241,8 @@ class _Map(Generic[CoreMap]):
 
     @property
     def origin(self) -> tuple[float, float, float]:
-        """The origin of the map's float32 frame: (0, 0, 0), unless its mesh is so far from there that
-        float32 could not represent it. Points in queries and answers are nevertheless in the frame of the
-        mesh: pass them as float64."""
+        """The origin of the map's float32 frame: (0, 0, 0), unless the mesh is so far from 0 that float32 could not
+        represent it. Points in queries and answers are nevertheless in the frame of the mesh: pass them as float64."""
         return self._built.origin
 
     @property

@@ -92,7 +92,7 @@ def _of_other_meshes(corpus: Corpus, records: Iterable[Record], progress: TextIO
         if change == "unreadable":
             yield f"{name}: {path} cannot be read any more; the mesh was {what}, and stays so"
         else:
-            yield f"{name}: {path} has changed since it was {what}; the same command without --verify labels it anew"
+            yield f"{name}: {path} has changed since it was {what}; the same command without --verify labels it again"
 
 
 def _misplaced(records: Iterable[Record], archive_of: dict[str, str | None]) -> Iterator[str]:
@@ -102,7 +102,7 @@ def _misplaced(records: Iterable[Record], archive_of: dict[str, str | None]) -> 
         for file in record.get("files", []):
             place = archive_of.get(record["mesh"])
             if file != place and (place is not None or file in archives):
-                yield f"{record['mesh']}: has labels in {file}, as before the corpus changed; the same command without --verify mends that"
+                yield f"{record['mesh']}: has labels in {file}, as before the corpus changed; the same command without --verify corrects this"
 
 
 def _changed(folder: pathlib.Path, hashes: Mapping[str, str], progress: TextIO | None) -> Iterator[str]:
@@ -110,8 +110,8 @@ def _changed(folder: pathlib.Path, hashes: Mapping[str, str], progress: TextIO |
         path = folder / name
         try:
             if not path.is_file():
-                yield f"{name}: is missing; the same command without --verify makes it anew"
+                yield f"{name}: is missing; the same command without --verify makes it again"
             elif hash_of(path) != expected:
-                yield f"{name}: has other bytes than it had; remove it, and the same command without --verify makes it anew"
+                yield f"{name}: has changed since it was written; remove it, and the same command without --verify makes it again"
         except OSError as error:
             yield f"{name}: cannot be read ({error.strerror})"
