@@ -36,7 +36,7 @@ std::array<float, 3> shares_in(const std::array<Vec3f, 3>& corners, const Vec3f&
     const float bb = dot(ab, ab), bc = dot(ab, ac), cc = dot(ac, ac);
     const float pb = dot(ap, ab), pc = dot(ap, ac);
     const float determinant = bb * cc - bc * bc;
-    // Without an area, along the longer edge.
+    // A triangle without an area counts as its longer edge.
     if (!(determinant > 1e-12F * bb * cc)) {
         const bool along_b = bb >= cc;
         const float size = along_b ? bb : cc;
@@ -48,7 +48,7 @@ std::array<float, 3> shares_in(const std::array<Vec3f, 3>& corners, const Vec3f&
     return {1 - b - c, b, c};
 }
 
-/// Calls build(). In the sentence of its error is whose map could not be built.
+/// Calls build(). Adds to its error whose map could not be built.
 template <typename Build>
 ExactMap DeformingCollider::naming_it(const std::string& vertices, const Build& build) const {
     try {
@@ -170,7 +170,7 @@ ExactMap DeformingCollider::archived_map(const StateArchive& state, std::span<co
     try {
         return built_of(vertices);
     } catch (const Error&) {
-        state.require(false); // vertices that were saved had a map
+        state.require(false); // the vertices had a map when they were saved
         throw;
     }
 }

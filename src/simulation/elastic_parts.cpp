@@ -45,9 +45,9 @@ class Weigher {
         const Vec3d to_b = rest(face[1]) - rest(face[0]), to_c = rest(face[2]) - rest(face[0]);
         const Vec3d across = cross(to_b, to_c);
         const double twice_area = length(across);
-        if (!(twice_area > 0)) return; // of no area: it has no mass and no direction
+        if (!(twice_area > 0)) return; // a face without area has no mass and no direction
         const Vec3d normal = across * (1 / twice_area);
-        // Another axis for a face that x hardly lies along.
+        // Another axis is used for a face that is nearly perpendicular to the x axis.
         constexpr double kAlong = 0.1;
         Vec3d warp = Vec3d{1, 0, 0} - normal * normal.x;
         if (length(warp) < kAlong) warp = Vec3d{0, 1, 0} - normal * normal.y;
@@ -64,7 +64,7 @@ class Weigher {
         for (const std::uint32_t corner : face) parts_.masses[corner] += material_.density * twice_area / 6;
     }
 
-    /// At the edges of just two faces of cloth.
+    /// Adds a hinge at each edge of exactly two faces of cloth.
     void add_hinges() {
         struct Sides {
             std::array<std::uint32_t, 2> opposite{};
@@ -96,7 +96,8 @@ class Weigher {
         for (const auto& [ends, sides] : edges) edges_.push_back(ends);
     }
 
-    /// Structural constraints that are no edges of faces. They weigh as much as strips of cloth.
+    /// Adds threads: structural constraints that are not edges of faces. They weigh as much as strips of
+    /// cloth.
     void add_threads() {
         double sum = edge_lengths_;
         std::size_t count = edge_count_;
@@ -121,8 +122,8 @@ class Weigher {
         }
     }
 
-    /// The particles of bodies have their masses from the deformable; what is held, and what belongs to
-    /// nothing, any.
+    /// The particles of bodies have their masses from the deformable; those that are held or belong to
+    /// nothing may have any mass.
     void weigh_bodies() {
         double sum = 0;
         for (std::size_t i = 0; i < parts_.masses.size(); ++i) {

@@ -20,7 +20,7 @@ double mean_edge_of(const Deformable& deformable) {
     return double{mean_edge_length(elements_of(deformable), deformable.positions)};
 }
 
-/// With a thickness within which contacts can push.
+/// The options with a thickness that is large enough for contacts to push.
 SimulationOptions contact_options(SimulationOptions options, double mean_edge) {
     const double least = std::max(threshold::kLeastThickness * mean_edge, threshold::kLeastThicknessOfAll);
     options.thickness = std::max(*options.thickness, least);
@@ -29,7 +29,7 @@ SimulationOptions contact_options(SimulationOptions options, double mean_edge) {
     return options;
 }
 
-/// Of a collider's surface as it is, in its body frame.
+/// The vertices of a collider's present surface, in its body frame.
 std::vector<Vec3f> vertices_of(const Collider& collider, const std::optional<DeformingCollider>& surface) {
     if (!surface) return model_mesh(map_of_surface(collider)->view(), collider.scale).vertices;
     std::vector<Vec3f> vertices = surface->vertices();
@@ -84,8 +84,8 @@ bool NewtonSolver::holds(std::size_t collider) const {
                        [&](const Attachment& attachment) { return attachment.collider == collider; });
 }
 
-/// Colliders that are free are unknowns of the steps, but those that hold particles: these go by the load of
-/// the frame before.
+/// Free colliders are unknowns of the steps, except those that hold particles: these move by the load of the
+/// frame before.
 void NewtonSolver::find_free_bodies() {
     if (!contacts_) return;
     const std::span<const FreeBody> known = contacts_->free_bodies();
@@ -111,19 +111,19 @@ void NewtonSolver::find_free_bodies() {
     contacts_->set_free_bodies(std::move(bodies), step_.masses(), step_.bodies());
 }
 
-/// A body that is an unknown goes nowhere before the step.
+/// A body that is an unknown does not move before the step.
 RigidTransform NewtonSolver::pose_without_contact(std::size_t collider, double seconds) const {
     return motions.is_unknown(collider) ? colliders[collider].pose : pose_after(colliders[collider], seconds);
 }
 
-/// By inertia and as much of gravity as the last step has left.
+/// Guesses the pose from inertia and the share of gravity that acted in the last step.
 RigidTransform NewtonSolver::guess(const FreeBody& body, double seconds) {
     const RigidBody& rigid = *motions.body_of(body.collider());
     return rigid.after(colliders[body.collider()].pose, options.gravity * rigid.left_of(options.gravity),
                        seconds);
 }
 
-/// The collider is where contacts have let its body go, and has got momentum by that.
+/// Moves the collider to the pose that contacts permitted its body, and gives the body the momentum of that.
 void NewtonSolver::end_step_of(const FreeBody& body, double seconds) {
     RigidBody& rigid = *motions.body_of(body.collider());
     Collider& collider = colliders[body.collider()];
@@ -168,7 +168,7 @@ void NewtonSolver::step() {
     rest_.watch(deformable.positions, largest_speed, profile.truncated_count > truncated_before);
 }
 
-/// Where nothing stops it, no particle leaves all bounds in the frame.
+/// Requires that no particle would leave all bounds in the frame if nothing stopped it.
 void NewtonSolver::require_ways() {
     ScratchVector<Vec3d> ends(motion_.places.begin(), motion_.places.end(), workers_.scratch());
     for (std::size_t i = 0; i < ends.size(); ++i)
@@ -176,7 +176,7 @@ void NewtonSolver::require_ways() {
     bounds_.require_ways(ends, frame);
 }
 
-/// Colliders that deform get the maps of the frame's end.
+/// Gives deforming colliders the maps of the frame's end.
 void NewtonSolver::deform() {
     const Stopwatch stopwatch(profile.collision_seconds);
     for (std::size_t c = 0; c < colliders.size(); ++c) {
@@ -192,7 +192,8 @@ void NewtonSolver::deform() {
     }
 }
 
-/// So that loads follow what gives way to colliders, and impacts are solved where they happen.
+/// The number of parts of a frame, such that loads follow whatever yields to colliders, and impacts are
+/// solved where they happen.
 std::uint32_t NewtonSolver::part_count() {
     if (!options.surfaces_collide()) return 1;
     find_now();
@@ -210,7 +211,7 @@ std::uint32_t NewtonSolver::part_count() {
     return static_cast<std::uint32_t>(std::clamp(parts, 1.0, double{threshold::kMostPartsOfFrame}));
 }
 
-/// Colliders stand where the frame ends.
+/// Requires that colliders are in their poses at the end of the frame.
 void NewtonSolver::find_near_colliders() {
     const double room = threshold::kDecidingRoom * fastest() * options.time_step;
     const auto may_carry = [&](std::size_t c) {
@@ -221,8 +222,8 @@ void NewtonSolver::find_near_colliders() {
     for (std::size_t c = 0; c < colliders.size(); ++c) is_near_[c] = holds(c) || may_carry(c) ? 1 : 0;
 }
 
-/// How far colliders carry a particle in the frame beyond the motion that it has, at most. Colliders stand
-/// where the frame ends.
+/// The largest distance by which colliders carry a particle in the frame beyond its own motion. Requires that
+/// colliders are in their poses at the end of the frame.
 double NewtonSolver::most_carried() {
     const CarryField field(colliders_before_, colliders, is_near_, deformations_, {},
                            threshold::kTouch * thickness_);
@@ -238,22 +239,22 @@ double NewtonSolver::most_carried() {
     return most;
 }
 
-/// By the velocities that particles have.
+/// The displacements by the particles' present velocities.
 ScratchVector<Vec3d> NewtonSolver::own_displacements(double seconds) const {
     ScratchVector<Vec3d> own(motion_.velocities.begin(), motion_.velocities.end(), workers_.scratch());
     for (Vec3d& displacement : own) displacement *= seconds;
     return own;
 }
 
-/// Vertices of a collider that deforms do not go back.
+/// The vertices of a deforming collider cannot be moved back.
 bool NewtonSolver::can_be_halved(float share) const {
     return options.surfaces_collide() && share > threshold::kLeastPartToMove &&
            std::none_of(deformations_.begin(), deformations_.end(),
                         [](const Deformation& deformation) { return deformation.motion != nullptr; });
 }
 
-/// @return whether colliders that move could carry what is near them so far, and anything could move. If not,
-/// nothing has changed, and a smaller part is to be tried; the least one is always made
+/// @return whether moving colliders could carry nearby particles this far, and anything could move. If not,
+/// nothing has changed, and a smaller part has to be tried; the smallest is always accepted
 bool NewtonSolver::step_part(const FramePart& part) {
     const float share = part.end - part.begin;
     const double seconds = options.time_step * double{share};
@@ -293,14 +294,14 @@ bool NewtonSolver::step_part(const FramePart& part) {
     if (contacts_) contacts_->particles().end_step(colliders, motion_.places, motion_.velocities, seconds);
     for (std::size_t i = 0; i < count; ++i) {
         gained_[i] = (motion_.velocities[i] - velocities_before[i]) * (1 / seconds);
-        // A held particle is led, and has no motion of its own.
+        // The motion of a held particle is prescribed.
         if (is_held_[i] != 0) motion_.is_smooth[i] = 0;
     }
     return true;
 }
 
-/// Where a body touches something, or may do so, its steps are of first order: an impact is not smooth. So
-/// are steps of another length than that before.
+/// If a body touches something or may do so, its steps are of first order, since an impact is not smooth. So
+/// are steps whose length differs from that of the step before.
 void NewtonSolver::choose_orders(bool is_part) {
     if (is_part || was_part_) std::fill(motion_.is_smooth.begin(), motion_.is_smooth.end(), std::uint8_t{0});
     was_part_ = is_part ? 1 : 0;
@@ -317,9 +318,9 @@ void NewtonSolver::find_now() {
     for (std::size_t i = 0; i < motion_.particle_count(); ++i) now_.set(i, Vec3f(motion_.places[i]));
 }
 
-/// Where the step begins: what colliders carry is with them.
-/// @param is_least  carries it even where something meets then
-/// @return whether they can carry it so far
+/// Finds the start of the step, to which colliders carry particles along.
+/// @param is_least  carries particles even if some pairs then meet
+/// @return whether colliders can carry them this far
 bool NewtonSolver::find_start(const FramePart& part, bool is_least) {
     find_now();
     start_ = now_;
@@ -340,7 +341,7 @@ bool NewtonSolver::find_start(const FramePart& part, bool is_least) {
                             is_least, workers_);
 }
 
-/// Where nothing carries a particle, all its digits are kept.
+/// Particles that nothing carries keep double precision.
 ScratchVector<Vec3d> NewtonSolver::exact_start() const {
     ScratchVector<Vec3d> places(motion_.places.begin(), motion_.places.end(), workers_.scratch());
     for (std::size_t i = 0; i < places.size(); ++i)
@@ -348,7 +349,8 @@ ScratchVector<Vec3d> NewtonSolver::exact_start() const {
     return places;
 }
 
-/// Inertia and as much of gravity as the last step has left. @param start  from where what is carried goes on
+/// Guesses positions from inertia and the share of gravity that acted in the last step. @param start  the
+/// positions after carrying
 ScratchVector<Vec3d> NewtonSolver::guess(std::span<const Vec3d> start, double seconds) const {
     ScratchVector<Vec3d> places(start.begin(), start.end(), workers_.scratch());
     for (std::size_t i = 0; i < places.size(); ++i) {
@@ -356,15 +358,15 @@ ScratchVector<Vec3d> NewtonSolver::guess(std::span<const Vec3d> start, double se
         const Vec3d pull = accelerations_[i];
         const double pull_sq = dot(pull, pull);
         const double share = pull_sq > 0 ? std::clamp(dot(gained_[i], pull) / pull_sq, 0.0, 1.0) : 0;
-        // A carried particle has the motion of its collider already.
+        // A carried particle already has the motion of its collider.
         const Vec3d carried = start[i] - motion_.places[i], own = motion_.velocities[i] * seconds;
         places[i] += own - carried + pull * (share * seconds * seconds);
     }
     return places;
 }
 
-/// @param may_stop  whether a step in which nothing can move is accepted
-/// @return whether the step is
+/// @param may_stop  whether a step is accepted in which nothing can move
+/// @return whether the step is accepted
 bool NewtonSolver::minimise(std::span<Vec3d> places, double seconds, bool may_stop) {
     const std::uint32_t steps_in_contact = options.newton().step_count;
     const std::uint32_t steps_without = threshold::kStepsWithoutContact * steps_in_contact;
@@ -453,10 +455,10 @@ void NewtonSolver::move_particles(const RigidTransform& motion) {
     publish_places();
 }
 
-/// As an acceleration in the next frame: of the velocity of the air across a face, relative to it, the rate a
-/// second.
+/// The wind acts as an acceleration in the next frame: `rate` per second times the velocity of the air across
+/// a face, relative to the face.
 void NewtonSolver::blow(const Vec3d& wind, double rate) {
-    const double most = 1 / options.time_step; // no more than all of the difference in a frame
+    const double most = 1 / options.time_step; // no more than the whole difference in a frame
     ScratchVector<Vec3d> sums(deformable.particle_count(), workers_.scratch());
     ScratchVector<std::uint32_t> counts(deformable.particle_count(), workers_.scratch());
     for (const Triangle& face : deformable.faces) {

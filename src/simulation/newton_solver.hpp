@@ -58,24 +58,25 @@ class NewtonSolver : public Solver {
     ImplicitStep step_;
     Motion motion_;
     std::vector<std::uint8_t> is_held_;
-    std::vector<Vec3d> accelerations_; ///< by gravity and wind
-    std::vector<Vec3d> gained_; ///< [particle] the acceleration of the last step: what contacts left of
-                                ///< gravity, for the guess of the next
-    std::vector<Deformation> deformations_; ///< by collider, in this frame
+    std::vector<Vec3d> accelerations_; ///< [particle] by gravity and wind
+    std::vector<Vec3d>
+        gained_; ///< [particle] the acceleration of the last step, after contacts; for the guess of the next
+    std::vector<Deformation> deformations_; ///< [collider] in this frame
     std::vector<std::uint8_t>
-        is_near_; ///< [collider] 1 for those that may carry anything in this frame, or hold it
-    std::vector<std::uint8_t> may_touch_; ///< [particle] 1 for those that may do so in this frame
-    std::uint8_t was_part_ = 0;           ///< of a frame, the last step
-    std::vector<std::uint32_t> held_by_;  ///< [particle] the collider that it is attached to, or kNoObstacle
-    /// [particle] Where it is held, when a step begins and when it ends: contact may keep it from there.
+        is_near_; ///< [collider] 1 for colliders that may carry particles in this frame, or hold them
+    std::vector<std::uint8_t>
+        may_touch_;             ///< [particle] 1 for particles that may touch something in this frame
+    std::uint8_t was_part_ = 0; ///< whether the last step was only a part of a frame
+    std::vector<std::uint32_t> held_by_; ///< [particle] the collider to which it is attached, or kNoObstacle
+    /// [particle] The positions to which held particles are led, at the beginning and at the end of a step;
+    /// contact may keep them from there.
     PointArrays led_, led_to_;
-    PointArrays now_, start_; ///< where particles are, and where the step begins: what colliders carry is
-                              ///< with them
-    std::vector<Collider> colliders_before_; ///< where the step began
-    std::vector<std::uint8_t> meets_some_;   ///< [collider] 0 for those that let all particles through
+    PointArrays now_, start_; ///< present positions, and those at which the step begins, after carrying
+    std::vector<Collider> colliders_before_; ///< at the beginning of the step
+    std::vector<std::uint8_t> meets_some_;   ///< [collider] 0 for colliders that let all particles through
     std::optional<SurfaceContacts> contacts_;
     double mean_edge_; ///< of the surface
-    double thickness_; ///< in force: positive
+    double thickness_; ///< the effective one, which is positive
 };
 
 } // namespace echinus

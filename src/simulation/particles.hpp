@@ -44,7 +44,7 @@ inline float largest_coordinate(const PointArrays& points, std::size_t count) {
     return largest;
 }
 
-/// Where a particle is put, and what it has moved in this frame: its velocity.
+/// The position in which a particle is put, and its displacement in this frame, which is its velocity.
 struct Placement {
     Vec3f position, step;
 };
@@ -52,9 +52,9 @@ struct Placement {
 /// The particles of a deformable while a frame of the jakobsen solver is computed.
 struct Particles {
     PointArrays positions;
-    PointArrays previous;        ///< one frame ago
-    PointArrays frame_start;     ///< where they were when the frame began
-    std::vector<float> mobility; ///< 1, or 0 for a particle that is pinned
+    PointArrays previous;        ///< the positions one frame ago
+    PointArrays frame_start;     ///< the positions at the beginning of the frame
+    std::vector<float> mobility; ///< [particle] 1, or 0 for a pinned particle
 
     Particles() = default;
     /// @param time_step  seconds per frame
@@ -70,7 +70,7 @@ struct Particles {
     bool pinned(std::size_t i) const { return mobility[i] == 0; }
     /// The displacement of the particle in this frame.
     Vec3f step(std::size_t i) const { return positions[i] - previous[i]; }
-    /// Gives a particle, where it is, another velocity: what it has moved in this frame.
+    /// Changes a particle's velocity, but not its position. @param step  its displacement in this frame
     void set_velocity(std::size_t i, const Vec3d& step) {
         previous.set(i, Vec3f(Vec3d(positions[i]) - step));
     }
@@ -79,7 +79,7 @@ struct Particles {
         set_velocity(i, Vec3d(place.step));
     }
     void move_previous(std::size_t i, const Vec3f& way) { previous.set(i, previous[i] + way); }
-    /// Puts a particle where it has moved by so much in this frame.
+    /// Moves a particle so that its displacement in this frame is `step`.
     void set_step(std::size_t i, const Vec3f& step) { positions.set(i, previous[i] + step); }
 };
 

@@ -16,7 +16,8 @@ class RestWatch {
     RestWatch(const RestCondition& condition, const std::vector<Vec3f>& positions)
         : condition_(condition), places_(positions) {}
 
-    /// To be called after each frame. @param is_stopped  something was stopped in it, which is no rest
+    /// To be called after each frame. @param is_stopped  particles were stopped in it, which does not count
+    /// as rest
     void watch(const std::vector<Vec3f>& positions, double largest_speed, bool is_stopped = false) {
         const bool all_near = all_stay(positions);
         if (!all_near) places_ = positions;
@@ -41,7 +42,8 @@ class RestWatch {
     }
 
     RestCondition condition_;
-    std::vector<Vec3f> places_; ///< near which all have stayed, for quiet_frame_count_ frames or longer
+    std::vector<Vec3f>
+        places_; ///< positions near which all particles have stayed for at least quiet_frame_count_ frames
     std::uint32_t quiet_frame_count_ = 0;
 };
 

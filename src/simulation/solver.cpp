@@ -22,8 +22,8 @@ namespace echinus {
 
 namespace {
 
-/// Half the particles' spacing: of a cloth at rest hardly a face is cut by the model, and it lies close
-/// (docs/thickness.md).
+/// Half the spacing of the particles: with it a model cuts hardly any face of a cloth at rest, and the cloth
+/// lies close (docs/thickness.md).
 double default_thickness(const Deformable& deformable) {
     double sum = 0;
     std::size_t count = 0;
@@ -42,7 +42,7 @@ SimulationOptions with_thickness(SimulationOptions options, const Deformable& de
     return options;
 }
 
-/// Rotations that are of unit length to rounding in double stay as they are, to the bit.
+/// Rotations of unit length up to rounding in double keep their bits.
 std::vector<Collider> with_unit_rotations(std::vector<Collider> colliders) {
     constexpr double kUnitRounding = 1e-12;
     for (Collider& collider : colliders) {
@@ -52,7 +52,7 @@ std::vector<Collider> with_unit_rotations(std::vector<Collider> colliders) {
     return colliders;
 }
 
-/// The deformable as it begins.
+/// The deformable in its initial state.
 /// @throws Error InvalidOptions
 Deformable valid_start(Deformable deformable, const std::vector<Collider>& colliders,
                        const SimulationOptions& options) {
@@ -64,7 +64,7 @@ Deformable valid_start(Deformable deformable, const std::vector<Collider>& colli
     require_valid_filters(deformable, colliders.size());
     require_valid_handles(deformable);
     deformable.velocities.resize(deformable.particle_count());
-    // So that what is read of it later is whole, and that nothing that is parted stays stretched.
+    // So that later reads always find rest positions, and untangling does not change the rest shape.
     if (deformable.rest_positions.empty()) deformable.rest_positions = deformable.positions;
     if (options.surfaces_collide() && options.newton().untangle)
         untangle(deformable, with_unit_rotations(colliders), with_thickness(options, deformable));
@@ -101,8 +101,7 @@ void Solver::build_maps() {
     }
 }
 
-/// An error is left to that
-/// frame, which builds the map again.
+/// Errors are ignored here: the next frame builds the map again and reports them.
 void Solver::prepare_next_frame() {
     if (std::none_of(deforming_.begin(), deforming_.end(), [](const auto& collider) { return !!collider; }))
         return;
@@ -141,7 +140,7 @@ void Solver::set_free(std::size_t collider, double mass) {
                                          colliders[collider], name));
 }
 
-/// From now on the collider's surface deforms, if only a little, unless lead() throws.
+/// From now on the collider's surface counts as deforming, unless lead() throws.
 template <typename Lead>
 void Solver::lead_surface(std::size_t collider, const Lead& lead) {
     std::optional<DeformingCollider>& surface = deforming_[collider];

@@ -23,8 +23,8 @@
 
 namespace echinus {
 
-/// A simulation, whatever moves its particles: what is known of the deformable, of the colliders and of rest.
-/// `deformable` is the user's view: it changes when a frame is complete.
+/// A simulation, independent of the method that moves its particles: the state of the deformable, of the
+/// colliders and of rest. `deformable` is the user's view: it changes when a frame is complete.
 class Solver {
   public:
     Solver(Deformable deformable, std::vector<Collider> colliders, const SimulationOptions& options);
@@ -38,21 +38,23 @@ class Solver {
     virtual Load load_on(std::size_t collider) const = 0;
     virtual void record_contacts(bool is_on) = 0;
     virtual std::span<const ContactPoint> contact_points() const = 0;
-    /// Of all that decides how the simulation goes on. Reading may leave a part of it when it throws.
+    /// Writes or reads everything that determines how the simulation continues. If reading throws, a part may
+    /// have been read.
     virtual void archive(StateArchive& state) = 0;
 
     /// @throws Error InvalidOptions
     void set_free(std::size_t collider, double mass);
-    /// At once, or in the frame of its time. @throws Error InvalidOptions; then it is forgotten
+    /// At once, or in the frame of its time. @throws Error InvalidOptions; the teleport is then dropped
     void teleport(const Teleport& teleport);
-    /// Those of the frame that comes. The same.
+    /// Carries out the teleports of the next frame. @throws Error as teleport()
     void carry_out_teleports();
     Residual residual() const;
-    /// @throws Error InvalidOptions, as DeformingCollider's
+    /// @throws Error InvalidOptions, and the errors of DeformingCollider
     void lead_vertices(std::size_t collider, std::span<const Vec3f> vertices_local);
     void follow_cache(std::size_t collider, VertexCache cache);
     std::string name_of_collider(std::size_t collider) const;
-    /// Of what does not change while it goes on: options, the deformable and where it began, each collider.
+    /// The fingerprint of what does not change during the simulation: the options, the deformable and its
+    /// initial positions, and each collider.
     StateFingerprint fingerprint() const;
     bool at_rest() const { return rest_.at_rest() && all_arrived(); }
 
@@ -61,24 +63,24 @@ class Solver {
     ColliderMotions motions;
     SimulationOptions options;
     std::uint32_t frame = 0;
-    bool has_blown = false; ///< blow() was called for the frame that comes
+    bool has_blown = false; ///< whether blow() was called for the next frame
     double largest_speed;
     SimulationProfile profile;
 
   protected:
     Solver(const Solver&) = default;
 
-    /// A handle holds a particle from now on, or lets it go.
+    /// A handle takes hold of a particle, or releases it.
     virtual void set_held(std::uint32_t particle, bool is_held) = 0;
-    /// All particles are elsewhere from now on, which the next frame takes as standing.
+    /// Moves all particles; the next frame treats them as if they had always been there.
     virtual void move_particles(const RigidTransform& motion) = 0;
 
-    /// Builds all maps of the frame's end before anything moves: where a map cannot be built, nothing has
+    /// Builds all maps for the frame's end before anything moves: if a map cannot be built, nothing has
     /// changed.
     void build_maps();
-    /// A thread that has nothing to do builds the maps of the next frame meanwhile.
+    /// Lets an idle thread build the maps of the next frame in the meantime.
     void prepare_next_frame();
-    /// Gives colliders that are led the velocities of the frame. @throws Error Diverged
+    /// Gives led colliders the velocities of the frame. @throws Error Diverged
     void move_colliders_on();
     void archive_counts(StateArchive& state);
     void archive_colliders(StateArchive& state);
@@ -86,7 +88,7 @@ class Solver {
     Workers workers_;
     Attachments attachments_;
     Handles handles_;
-    std::vector<std::optional<DeformingCollider>> deforming_; ///< by collider; none where it never deformed
+    std::vector<std::optional<DeformingCollider>> deforming_; ///< [collider] none if it never deformed
     RestWatch rest_;
     Bounds bounds_;
 
@@ -96,13 +98,13 @@ class Solver {
     bool all_arrived() const;
     void carry_out(const Teleport& teleport);
 
-    std::vector<Load> loads_;                 ///< by collider, of the frame before
-    std::vector<Teleport> teleports_;         ///< to come
-    std::uint64_t start_hash_;                ///< of where particles began
+    std::vector<Load> loads_;                 ///< [collider] of the frame before
+    std::vector<Teleport> teleports_;         ///< that are still to come
+    std::uint64_t start_hash_;                ///< of the initial positions
     std::vector<RigidTransform> start_poses_; ///< of the colliders
 };
 
-/// The solver that the options name. @throws Error InvalidOptions, as Simulation's constructor
+/// Makes the solver that the options name. @throws Error InvalidOptions, as Simulation's constructor
 std::unique_ptr<Solver> make_solver(Deformable deformable, std::vector<Collider> colliders,
                                     const SimulationOptions& options);
 

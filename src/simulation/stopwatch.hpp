@@ -4,7 +4,7 @@
 
 namespace echinus {
 
-/// Adds the time of its own life to a sum.
+/// Adds the duration of its lifetime to a sum.
 class Stopwatch {
   public:
     explicit Stopwatch(double& sum_seconds) : sum_seconds_(sum_seconds) {}

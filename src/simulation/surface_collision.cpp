@@ -15,15 +15,15 @@ namespace echinus {
 
 namespace {
 
-/// A step of the simulation converges to a tolerance, so that less than this is no correction; share of the
-/// thickness.
+/// As a share of the thickness. A step of the simulation converges only to a tolerance, so a smaller
+/// displacement is not a correction.
 constexpr float kLeastCorrection = 1e-3F;
 
-/// A particle nearer than so many thicknesses has met the surface.
+/// The distance from the surface, in thicknesses, within which a particle has hit it.
 constexpr float kReachOfImpact = 2;
 
-/// A simulation in which particles only collide: with faces of next to no stiffness, whose unit of time is a
-/// step of the solver, however long that is.
+/// The options of a simulation in which particles only collide: faces have next to no stiffness, and the unit
+/// of time is a step of the solver, however long that is.
 SimulationOptions simulation_options(double thickness, const SurfaceCollisionOptions& options) {
     SimulationOptions all;
     all.time_step = 1;
@@ -34,7 +34,7 @@ SimulationOptions simulation_options(double thickness, const SurfaceCollisionOpt
         .collision = options.self_collision ? CollisionMode::SurfacesAndSelf : CollisionMode::Surfaces,
         .self_thickness = options.self_thickness,
         .untangle = options.untangle};
-    all.bound = 1e30; // where the solver sends its particles is not ours to judge
+    all.bound = 1e30; // the solver may send its particles anywhere
     all.thickness = thickness;
     all.friction = options.friction;
     all.thread_count = options.thread_count;
@@ -68,7 +68,7 @@ struct SurfaceCollision::State {
 
     Simulation simulation;
     struct Particle {
-        Vec3f from;                 ///< where it was when the step began
+        Vec3f from;                 ///< its position at the beginning of the step
         Vec3d sent;                 ///< its motion in this step without contact
         bool has_exploded = false;  ///< in this step
         bool was_corrected = false; ///< in the step before
@@ -77,27 +77,28 @@ struct SurfaceCollision::State {
     std::vector<std::uint32_t> corrected;
 };
 
-/// Gives particles the velocities that lead them where the solver has put them.
+/// Gives particles the velocities that lead to the positions that the solver chose.
 void SurfaceCollision::State::send(std::span<const Vec3f> positions) {
     for (std::size_t i = 0; i < particles.size(); ++i) {
         const Vec3d motion = Vec3d(positions[i]) - Vec3d(simulation.positions()[i]);
         Particle& particle = particles[i];
         particle.from = simulation.positions()[i];
         constexpr double kFarthest{ParticleCollision::kFarthest};
-        particle.has_exploded = !(dot(motion, motion) <= kFarthest * kFarthest); // by NaN, too
+        particle.has_exploded = !(dot(motion, motion) <= kFarthest * kFarthest); // true for NaN, too
         particle.sent = particle.has_exploded ? Vec3d{} : motion;
         simulation.set_particle_velocity(i, particle.sent);
     }
 }
 
-/// The rest of a particle's motion after an impact. That of the step still has its way to the surface in it.
+/// The motion that a particle keeps after an impact. The motion of the step still contains its approach to
+/// the surface.
 Vec3d SurfaceCollision::State::without_approach(const Vec3f& position, Vec3d motion) const {
     const SimulationOptions& options = simulation.options();
     const float reach = kReachOfImpact * static_cast<float>(options.thickness.value());
     for (const Collider& collider : simulation.colliders()) {
         const Contact nearest = contact(collider, position, reach);
         if (!nearest.found()) continue;
-        const Vec3d material = velocity_at(collider, Vec3d(position)); // in one step
+        const Vec3d material = velocity_at(collider, Vec3d(position)); // displacement in one step
         motion = material +
                  stopped_motion(motion - material, nearest.normal, static_cast<float>(options.friction));
     }

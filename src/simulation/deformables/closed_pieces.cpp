@@ -13,7 +13,7 @@ namespace echinus {
 
 namespace {
 
-/// Of the cube of a piece's extent: a smaller volume is none, but rounding.
+/// A share of the cube of a piece's extent: a smaller volume is only rounding.
 constexpr double kLeastVolume = 1e-6;
 
 std::vector<Triangle> faces_of_cloth(const Deformable& deformable) {
@@ -26,7 +26,7 @@ std::vector<Triangle> faces_of_cloth(const Deformable& deformable) {
     return cloth;
 }
 
-/// Six times the volume of a piece, and its sign where there is one.
+/// Six times the volume of a piece, with its sign.
 struct Volume {
     double sixfold = 0, area = 0;
 

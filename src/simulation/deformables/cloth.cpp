@@ -33,7 +33,7 @@ void require_possible(const ClothOptions& options) {
                                           " to pin; its last one is " + std::to_string(particle_count - 1));
 }
 
-/// Lays particles, constraints and faces of a sheet into a Deformable.
+/// Makes the particles, constraints and faces of a sheet.
 class Weaver {
   public:
     explicit Weaver(const ClothOptions& options)
@@ -67,7 +67,8 @@ class Weaver {
         cloth_.constraints.push_back({a, b, static_cast<float>(length(across)), kind});
     }
 
-    /// Constraints of one row. Neighbouring ones share a particle, so every second is laid first.
+    /// The constraints of one row. Neighbouring constraints share a particle, so every second one is added
+    /// first.
     void add_constraints_along(std::uint32_t row) {
         for (std::uint32_t first : {0U, 1U})
             for (std::uint32_t column = first; column + 1 < columns_; column += 2)

@@ -38,13 +38,13 @@ void require_cloth(const TriangleMesh& mesh, std::span<const EdgeUse> edge_uses)
                          " of the cloth have the same corners; remove one of them (repair() can)");
 }
 
-/// A face beyond an edge, and whether both run along it the same way.
+/// A face beyond an edge, and whether both faces run along the edge in the same direction.
 struct Neighbour {
     std::uint32_t face;
     bool same_way;
 };
 
-/// Up to three of each face, one after the other.
+/// Up to three neighbours of each face.
 class Neighbours {
   public:
     Neighbours(std::size_t face_count, std::span<const EdgeUse> edge_uses)

@@ -13,17 +13,17 @@ struct Hinge {
     std::uint32_t a, b, c, d;
 };
 
-/// The faces of a cloth and how they hang together.
+/// The faces of a cloth and their connections.
 struct ClothSurface {
-    std::vector<Triangle> faces;                     ///< turned alike
+    std::vector<Triangle> faces;                     ///< consistently oriented
     std::vector<std::array<std::uint32_t, 2>> edges; ///< each once, its smaller vertex first, ascending
     std::vector<Hinge> hinges;                       ///< by edge, ascending
 };
 
-/// Turns faces round where they run along a common edge the same way as a face that was reached before, from
-/// the first face of each piece on.
-/// @throws Error InvalidMesh, naming faces and edge, where an edge has more than two faces, a face has two
-/// equal corners, or two faces have the same three
+/// Starting from the first face of each piece, turns each face that runs along a common edge in the same
+/// direction as a face that was reached before.
+/// @throws Error InvalidMesh, naming the faces and the edge, if an edge has more than two faces, a face has
+/// two equal corners, or two faces have the same three
 /// @pre indices are in range
 ClothSurface surface_of(const TriangleMesh& mesh);
 

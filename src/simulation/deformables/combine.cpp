@@ -1,4 +1,4 @@
-// Deformables of deformables.
+// Makes deformables from other deformables.
 
 #include "simulation/start/validation.hpp"
 
@@ -21,7 +21,7 @@ void append(std::vector<Item>& to, const std::vector<Item>& from) {
     to.insert(to.end(), from.begin(), from.end());
 }
 
-/// A part that names a particle which it does not have would name one of the next part's.
+/// An index beyond the particles of its part would refer to a particle of the next part.
 void require_part(const Deformable& part, std::size_t number, std::size_t particles_before) {
     const std::string name = "part " + std::to_string(number) + " of the combined parts: ";
     try {

@@ -51,7 +51,7 @@ Vec3f placed(const Vec3f& vertex, const MeshClothOptions& options) {
     return Vec3f(options.pose.to_world(Vec3d(vertex) * options.scale));
 }
 
-/// Makes a cloth of a mesh. Lengths, areas and angles are those of the rest shape.
+/// Makes a cloth from a mesh. Lengths, areas and angles are those of the rest shape.
 class Tailor {
   public:
     Tailor(const TriangleMesh& mesh, const MeshClothOptions& options)
@@ -102,7 +102,7 @@ class Tailor {
         return sum / static_cast<double>(surface_.edges.size() + options_.threads.size());
     }
 
-    /// By the areas around the particles; pinned ones weigh as if they were free.
+    /// Sets the masses by the areas around the particles; pinned particles count as if they were free.
     void weigh_particles() {
         std::vector<double> areas(rest_.size(), 0);
         for (const Triangle& face : surface_.faces)
@@ -127,7 +127,8 @@ class Tailor {
         cloth_.attachments = options_.attachments;
     }
 
-    /// Do the two faces make up a quadrilateral with about right angles, of which the edge is a diagonal?
+    /// Do the two faces form a quadrilateral with approximately right angles, of which the edge is a
+    /// diagonal?
     bool is_diagonal(const Hinge& hinge) const {
         const double diagonal = distance(hinge.a, hinge.b);
         for (const std::uint32_t end : {hinge.a, hinge.b})

@@ -10,7 +10,7 @@ namespace echinus {
 
 namespace {
 
-/// In lattice steps. The lattice itself is off by one step, a mesh judged without it by as much.
+/// In lattice steps. The lattice is inexact by one step, and a mesh that is tested without it by as much.
 constexpr float kGuard = 8;
 
 float largest_of(const Vec3d& scale) {

@@ -9,21 +9,21 @@
 
 namespace echinus {
 
-/// A collider with a surface (map_of_surface()) as it stands in one frame, and what is needed to keep
-/// particles off it.
+/// A collider with a surface (map_of_surface()) in its pose in one frame, with the data for keeping particles
+/// off it.
 ///
-/// Lengths are those of the world in the *body frame*: the collider's frame with its scale applied. The map
-/// is asked in its own frame, *local*.
+/// Lengths in the *body frame* are those of the world: the collider's frame with its scale applied. The map
+/// is queried in its own frame, *local*.
 struct ColliderNow {
     ExactMapView map;
     Vec3d scale;
     FrameChange local, body;
     MaterialMotion material;
     float step;      ///< of the lattice, in world units
-    float guard;     ///< no particle is left nearer to the surface than this
+    float guard;     ///< particles are kept at least this far from the surface
     float thickness; ///< at least two guards
     float friction;
-    float coordinate_sum; ///< of where collider and mesh stand; bounds what rounding loses
+    float coordinate_sum; ///< of the positions of collider and mesh; bounds the rounding
 
     /// @pre the collider has a surface, and the options a thickness
     ColliderNow(const Collider& collider, const RigidTransform& previous_pose,

@@ -10,11 +10,11 @@ namespace echinus {
 
 namespace {
 
-/// A particle between colliders is rescued from one after the other, so many times.
+/// How often a particle between colliders is rescued from each of them in turn.
 constexpr int kPasses = 4;
 
-/// By the kind of the collider's map. @pre the collider is valid, and the options have a thickness
-/// @param passes  [particle_count] 1 for those that the collider lets through, or none
+/// Depends on the kind of the collider's map. @pre the collider is valid, and the options have a thickness
+/// @param passes  [particle_count] 1 for particles that the collider lets through; or empty
 std::unique_ptr<Collision> make_collision(const Collider& collider, const Particles& particles,
                                           std::span<const std::uint8_t> passes,
                                           const SimulationOptions& options) {
@@ -62,7 +62,7 @@ void Collisions::relax(Particles& particles, SimulationProfile& profile, const W
 
 void Collisions::keep_free(Particles& particles, SimulationProfile& profile) {
     unproven_.clear();
-    // A particle that one collider pushed may be near another.
+    // A particle that one collider has pushed may be near another.
     if (std::find(is_away_.begin(), is_away_.end(), 1) != is_away_.end()) leave_out_away(particles);
     for (std::size_t i = 0; i < collisions_.size(); ++i) {
         if (is_away_[i] != 0) continue;
@@ -105,7 +105,7 @@ void Collisions::rescue(std::uint32_t particle, Particles& particles) const {
         collisions_[i]->take_back(particle, particles);
 }
 
-/// To any of the colliders.
+/// Whether the particle is lost to any of the colliders.
 bool Collisions::is_lost(std::uint32_t particle, const Particles& particles) const {
     return std::any_of(collisions_.begin(), collisions_.end(),
                        [&](const auto& collision) { return collision->is_lost(particle, particles); });

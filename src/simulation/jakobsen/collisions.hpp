@@ -21,20 +21,21 @@ class Collisions {
     void restart(std::span<const std::uint32_t> particles, const Particles& now);
     void set_friction(std::size_t number, double friction) { collisions_[number]->set_friction(friction); }
     /// @param number    of the collider
-    /// @param collider  where the frame leads it
+    /// @param collider  in its pose at the end of the frame
     void begin_frame(std::size_t number, const Collider& collider, const RigidTransform& previous_pose) {
         collisions_[number]->begin_frame(collider, previous_pose);
     }
-    /// In this frame leaves out the colliders that no particle is near, now and when keep_free() begins.
+    /// Leaves out colliders that no particle is near, at this time in the frame and again when keep_free()
+    /// begins.
     void leave_out_away(const Particles& particles);
     void relax(Particles& particles, SimulationProfile& profile, const Workers& workers);
     /// The proof at the end of a frame: rescues the particles that are not proven free, and counts those that
     /// are lost nevertheless.
     void keep_free(Particles& particles, SimulationProfile& profile);
-    /// @param motion  of the particle in this frame @return the part of it that the surfaces leave it
+    /// @param motion  of the particle in this frame @return the part of it that the surfaces permit
     Vec3d without_approach(std::size_t particle, const Particles& particles, Vec3d motion) const;
 
-    /// @param colliders  where they stand
+    /// @param colliders  in their present poses
     void archive(StateArchive& state, const std::vector<Collider>& colliders);
 
   private:
@@ -43,8 +44,9 @@ class Collisions {
     std::size_t mark_lost(std::uint32_t particle, const Particles& particles);
 
     std::vector<std::unique_ptr<Collision>> collisions_; ///< one for each collider
-    std::vector<std::uint8_t> is_away_;                  ///< by collider, in this frame
-    std::vector<std::uint32_t> unproven_;                ///< in keep_free(), with room for all
+    std::vector<std::uint8_t> is_away_;                  ///< [collider], in this frame
+    std::vector<std::uint32_t>
+        unproven_; ///< scratch list of keep_free(), with capacity for every particle of every collider
     bool rescues_;
 };
 

@@ -14,7 +14,7 @@ struct QueryPlan {
     float reach_in_thicknesses;
 };
 
-/// Pieces that stay in the first-level cache, and as far along the rays as the thickness needs.
+/// Pieces that fit into the first-level cache, and a reach along the rays that the thickness requires.
 constexpr QueryPlan kDistanceMapPlan{256, kReachInThicknesses};
 /// Larger pieces, since a custom map may have to set something up for each call.
 constexpr QueryPlan kCustomMapPlan{4096, 1};
@@ -23,16 +23,17 @@ QueryPlan plan_for(const Collider& collider) {
     return std::holds_alternative<DistanceMap>(collider.map.kind) ? kDistanceMapPlan : kCustomMapPlan;
 }
 
-/// Is a particle deeper than it moved, although it began the frame outside? Then it came through no surface
-/// that the map knows. With a distance map it came through the side of a layer: at a silhouette neighbouring
-/// directions differ in their number of entries, and along the ray the way out may be far from the way in.
+/// Is a particle deeper than the distance that it moved, although it began the frame outside? Then it came
+/// through no surface that the map knows. With a distance map it came through the side of a layer: at a
+/// silhouette neighbouring directions differ in their number of entries, and the way out along the ray may be
+/// far from the way in.
 bool came_through_a_side(const Collider& collider, const Contact& contact, const Vec3f& start,
                          const Vec3f& motion) {
     return contact.inside && contact.depth > length(motion) && !contains(collider, start);
 }
 
-/// The part of a particle's motion that a contact leaves. One that came through a side goes back to where it
-/// came from.
+/// The part of a particle's motion that a contact permits. A particle that came through a side returns to its
+/// previous position.
 /// @param motion  since the last frame, relative to the collider's material
 Vec3f answer(const Collider& collider, const Contact& contact, const Vec3f& position, const Vec3f& motion,
              const ResponseRules& rules) {
@@ -80,7 +81,7 @@ std::size_t ContactCollision::relax_piece(std::size_t begin, Particles& particle
     return pushed_count;
 }
 
-/// The map is asked once more, as the contacts of a piece are not kept.
+/// The map is queried again, since the contacts of a piece are not kept.
 Vec3d ContactCollision::without_approach(std::size_t i, const Particles& particles,
                                          const Vec3d& motion) const {
     if (!passes_.empty() && passes_[i] != 0) return motion;

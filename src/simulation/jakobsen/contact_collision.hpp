@@ -8,8 +8,7 @@
 
 namespace echinus {
 
-/// Collision with a distance map or a custom map: every particle is asked for its contact in every
-/// relaxation.
+/// Collision with a distance map or a custom map: every relaxation queries the contact of every particle.
 class ContactCollision final : public Collision {
   public:
     ContactCollision(const Collider& collider, const Particles& particles,
@@ -27,10 +26,10 @@ class ContactCollision final : public Collision {
     Collider collider_;
     MaterialMotion material_;
     ResponseRules rules_;
-    std::vector<std::uint8_t> passes_; ///< by particle: the collider lets it through; or none
-    float reach_;                      ///< how far outside a particle still has a contact
-    std::vector<Vec3f> places_;        ///< of a piece of the particles,
-    std::vector<Contact> contacts_;    ///< and their contacts
+    std::vector<std::uint8_t> passes_; ///< [particle] 1 if the collider lets it through; or empty
+    float reach_;                      ///< the distance outside within which a particle has a contact
+    std::vector<Vec3f> places_;        ///< of a piece of the particles
+    std::vector<Contact> contacts_;    ///< the contacts of places_
 };
 
 } // namespace echinus

@@ -13,13 +13,13 @@ namespace echinus {
 
 namespace {
 
-/// Places are asked about in pieces that stay in the first-level cache.
+/// Positions are queried in pieces that fit into the first-level cache.
 constexpr std::size_t kPieceSize = 256;
 
-/// Particles that are worth a piece of work, where several threads share them.
+/// The number of particles that make a piece of work if several threads share them.
 constexpr std::size_t kSharedSize = 2048;
 
-/// Share of the coordinates: more than floats lose when boxes change frames.
+/// A share of the coordinates that exceeds the rounding of floats when boxes change frames.
 constexpr double kRoundingOfBoxes = 1e-5;
 
 } // namespace
@@ -49,7 +49,7 @@ void ExactCollision::begin_frame(const Collider& collider, const RigidTransform&
 }
 
 bool ExactCollision::is_away(const AlignedBox<double>& starts, const AlignedBox<double>& ends) const {
-    AlignedBox<double> places; // of all ways, in the map's frame
+    AlignedBox<double> places; // of all particle paths, in the map's frame
     const auto add = [&](const AlignedBox<double>& box, const FrameChange& frame) {
         for (int corner = 0; corner < 8; ++corner)
             places.add(Vec3d(frame.point_to_local(Vec3d{(corner & 1) != 0 ? box.high.x : box.low.x,
@@ -63,7 +63,7 @@ bool ExactCollision::is_away(const AlignedBox<double>& starts, const AlignedBox<
     return places.distance(Vec3d(now_.map.centre)) > (1 + kRoundingOfBoxes) * double{now_.map.radius} + reach;
 }
 
-/// Known contacts move along with a collider that has moved, unless nobody asks.
+/// Makes known contacts follow a collider that has moved; called only when they are needed.
 void ExactCollision::follow() {
     if (pose_ == known_pose_) return;
     known_.follow(now_);
@@ -100,13 +100,13 @@ void ExactCollision::relax(std::size_t first, std::size_t end, Particles& partic
     if (piece.to_ask.count > 0) ask(particles, piece);
 }
 
-/// The nearest point now, or the crossing when the particle came through the surface since it was free last:
-/// behind a thin plate the nearest point lies on the wrong side.
+/// Finds the nearest point, or the crossing if the particle came through the surface since it was last free:
+/// behind a thin plate the nearest point is on the wrong side.
 ///
-/// Particles with about the same reach are asked for together.
+/// Particles with about the same reach are queried together.
 void ExactCollision::ask(Particles& particles, Piece& piece) {
     ParticleList& to_ask = piece.to_ask;
-    // Above 0 even where twice the thickness is too small for a float, so that doubling gets somewhere.
+    // Positive even if twice the thickness underflows, so that doubling has an effect.
     const float least_reach = std::max(2 * now_.thickness, std::numeric_limits<float>::min());
     float reach = least_reach;
     std::size_t left = 0;
@@ -140,8 +140,8 @@ void ExactCollision::ask(Particles& particles, Piece& piece) {
     }
 }
 
-/// How far from the particle the map looks for surface: as far as the particle may get in the next
-/// relaxations, or twice as far as there was none before.
+/// How far from the particle the map looks for surface: as far as the particle may move in the next
+/// relaxations, or twice the last reach if nothing was found within that.
 float ExactCollision::reach_of(std::size_t i, const Particles& particles) const {
     const float speed = length(particles.step(i));
     const float needed = 2 * (now_.thickness + speed);
@@ -202,7 +202,8 @@ std::span<const std::uint32_t> ExactCollision::find_unproven(const Particles& pa
     const PointArrays& free_now = moves_ ? moved_along_ : particles.frame_start;
     unproven_.count = 0;
     list_unproven(known_, now_, particles.positions, free_now, unproven_);
-    // These were compared with where they were at the start of the frame, not with where they were free last.
+    // These were compared with their positions at the start of the frame, not with those where they were last
+    // free.
     for (const std::uint32_t i : free_places_.exceptions())
         if (is_known_free(known_, now_, i, particles.positions[i], free_now[i])) unproven_.add(i);
     const auto is_proven = [&](std::uint32_t i) { return particles.pinned(i) || !is_unproven(i, particles); };

@@ -15,14 +15,15 @@ namespace echinus {
 
 /// Collision with an exact map.
 ///
-/// In the relaxations the map is asked for a particle's nearest point only when the particle has moved so far
-/// since the last answer that another one is possible (KnownContacts). Such particles are asked for together.
+/// In the relaxations, the map is queried for a particle's nearest point only if the particle has moved so
+/// far since the last answer that a different one is possible (KnownContacts). Such particles are queried
+/// together.
 ///
-/// After the relaxations comes the proof (SweptParticle). Most particles are proven free by what is known
-/// already; the others are swept.
+/// The proof (SweptParticle) follows the relaxations. Most particles are proven free by what is already
+/// known; the others are swept.
 class ExactCollision final : public Collision {
   public:
-    /// Particles that are outside now are free.
+    /// Particles that are outside at the start are free.
     ExactCollision(const Collider& collider, const Particles& particles, std::span<const std::uint8_t> passes,
                    const SimulationOptions& options);
     std::unique_ptr<Collision> clone() const override { return std::make_unique<ExactCollision>(*this); }
@@ -30,12 +31,12 @@ class ExactCollision final : public Collision {
     void restart(std::span<const std::uint32_t> restarted, const Particles& particles) override;
     void set_friction(double friction) override { options_.friction = friction; }
     void begin_frame(const Collider& collider, const RigidTransform& previous_pose) override;
-    /// As the collider sees it, each particle goes straight from one box to the other.
+    /// In the collider's frame, each particle moves straight from one box to the other.
     bool is_away(const AlignedBox<double>& starts, const AlignedBox<double>& ends) const override;
-    /// To the thickness over the nearest point, with friction.
+    /// Pushes particles to the thickness over the nearest point, with friction.
     void relax(Particles& particles, SimulationProfile& profile, const Workers& workers) override;
 
-    /// By the plane that it was pushed to.
+    /// Uses the plane to which the particle was pushed.
     Vec3d without_approach(std::size_t i, const Particles& particles, const Vec3d& motion) const override;
 
     std::span<const std::uint32_t> find_unproven(const Particles& particles) override;
@@ -49,7 +50,7 @@ class ExactCollision final : public Collision {
     void archive(StateArchive& state, const Collider& collider) override;
 
   private:
-    /// Some particles that a thread relaxes.
+    /// The particles that a thread relaxes at once.
     struct Piece {
         ParticleList to_ask;
         std::uint64_t contact_count = 0, map_query_count = 0;
@@ -70,10 +71,11 @@ class ExactCollision final : public Collision {
     SimulationOptions options_;
     ColliderNow now_;
     RigidTransform pose_, frame_start_pose_;
-    RigidTransform known_pose_; ///< where the collider stood when known_ followed it last
+    RigidTransform known_pose_; ///< the collider's pose when known_ last followed it
     KnownContacts known_;
     FreePlaces free_places_;
-    PointArrays moved_along_; ///< places at the frame's start, moved along; used while the collider moves
+    PointArrays moved_along_; ///< positions at the start of the frame, moved along with the collider; used if
+                              ///< it moves
     std::vector<Piece> pieces_;
     ParticleList unproven_;
     bool moves_ = false;

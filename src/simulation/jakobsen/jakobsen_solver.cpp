@@ -12,7 +12,7 @@ namespace echinus {
 
 namespace {
 
-/// In the deformable's order, without those between two pinned particles.
+/// The constraints in the deformable's order, without those between two pinned particles.
 std::vector<JakobsenConstraint>
 jakobsen_constraints(const Deformable& deformable,
                      const std::array<double, kConstraintKindCount>& stiffness) {
@@ -31,12 +31,13 @@ jakobsen_constraints(const Deformable& deformable,
     return constraints;
 }
 
-/// One relaxation of all constraints, one after the other.
+/// One relaxation of all constraints, in their order.
 void relax(std::span<const JakobsenConstraint> constraints, PointArrays& positions) noexcept {
     for (const JakobsenConstraint& constraint : constraints) {
         const Vec3f a = positions[constraint.a], b = positions[constraint.b];
         const Vec3f across = b - a;
-        // The smallest float keeps particles at one place from dividing by zero and is lost in all else.
+        // The smallest float avoids a division by zero for coincident particles, and is otherwise lost in
+        // rounding.
         const float distance = std::sqrt(dot(across, across) + std::numeric_limits<float>::min());
         const Vec3f correction = across * (1 - constraint.rest_length / distance);
         positions.set(constraint.a, a + correction * constraint.share_a);
@@ -44,8 +45,8 @@ void relax(std::span<const JakobsenConstraint> constraints, PointArrays& positio
     }
 }
 
-/// x' = x + (1 - drag) (x - x_previous) + a dt^2 (Jakobsen 2001, section 2), of one coordinate.
-/// @param mobility  1, or 0 of a particle that is pinned
+/// x' = x + (1 - drag) (x - x_previous) + a dt^2 (Jakobsen 2001, section 2), for one coordinate.
+/// @param mobility  1, or 0 for a pinned particle
 void integrate_axis(float* __restrict positions, float* __restrict previous, const float* __restrict mobility,
                     std::size_t count, float keep, float fall) {
     for (std::size_t i = 0; i < count; ++i) {
@@ -102,7 +103,7 @@ void JakobsenSolver::step() {
 
 void JakobsenSolver::begin_frame() {
     particles_.frame_start = particles_.positions;
-    // Velocities that callers set may be of any size.
+    // Velocities that callers set may have any size.
     bounds_.require_ways(particles_, frame);
     move_colliders_on();
 }
@@ -167,7 +168,7 @@ void JakobsenSolver::judge_frame() {
     rest_.watch(deformable.positions, largest_speed);
 }
 
-/// The velocity is what the particle moved in the last frame.
+/// The velocity is the displacement of the particle in the last frame.
 void JakobsenSolver::set_particle_velocity(std::size_t particle, const Vec3d& velocity) {
     if (particles_.pinned(particle)) return;
     particles_.set_velocity(particle, velocity * options.time_step);
@@ -175,7 +176,7 @@ void JakobsenSolver::set_particle_velocity(std::size_t particle, const Vec3d& ve
 }
 
 void JakobsenSolver::blow(const Vec3d& wind, double rate) {
-    // No more than all of the difference, however long a frame is.
+    // No more than the whole difference, however long a frame is.
     const auto share = static_cast<float>(std::min(rate * options.time_step, 1.0));
     wind_.blow(deformable.faces, Vec3f(wind * options.time_step), share, particles_);
     publish_velocities();

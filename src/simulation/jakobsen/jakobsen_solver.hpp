@@ -10,18 +10,18 @@
 
 namespace echinus {
 
-/// A constraint as its relaxation needs it.
+/// A constraint in the form that its relaxation needs.
 struct JakobsenConstraint {
     std::uint32_t a, b;
     float rest_length;
-    float share_a, share_b; ///< of its error, by the masses and the stiffness
+    float share_a, share_b; ///< the shares of its error for a and b, by the masses and the stiffness
 };
 
-/// Wind as a change of velocity between frames.
+/// Wind, as a change of velocities between frames.
 class Wind {
   public:
-    /// Gives each particle a share of the wind's velocity across the faces around it, as seen from the
-    /// particle: the mean over these faces.
+    /// Gives each particle a share of the wind's velocity across the surrounding faces relative to the
+    /// particle, averaged over these faces.
     /// @param wind_step  how far the air moves in one frame
     void blow(std::span<const Triangle> faces, const Vec3f& wind_step, float share, Particles& particles);
 
@@ -38,11 +38,11 @@ class Wind {
         Vec3f mean() const { return sum * (1 / static_cast<float>(face_count)); }
     };
 
-    std::vector<Gust> gusts_; ///< of each particle
+    std::vector<Gust> gusts_; ///< [particle]
 };
 
-/// The paper's simulation (section 2.3), which is that of Jakobsen (2001): Verlet integration, then
-/// constraints relaxed one after the other and collision of the particles in each relaxation.
+/// The paper's simulation (section 2.3), following Jakobsen (2001): Verlet integration, then relaxations,
+/// each of which treats all constraints in turn and then the collisions of particles.
 class JakobsenSolver : public Solver {
   public:
     /// @throws Error InvalidOptions
@@ -58,7 +58,7 @@ class JakobsenSolver : public Solver {
     void archive(StateArchive& state) override;
 
   protected:
-    // Handles and teleports need the other solver.
+    // Handles and teleports need the newton solver.
     void set_held(std::uint32_t, bool) override {}
     void move_particles(const RigidTransform&) override {}
 

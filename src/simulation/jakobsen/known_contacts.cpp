@@ -9,8 +9,9 @@ namespace echinus {
 
 namespace {
 
-/// Relative to lengths and coordinates: the error of a distance between two places in the world, since both
-/// were rounded to single precision in two frames, as was their distance: less than 12 x 2^-24.
+/// The error of a distance between two positions in the world, relative to lengths and coordinates. The
+/// positions were rounded to single precision in two frames, and their distance was rounded: less than 12 x
+/// 2^-24.
 constexpr float kRounding = 1.0F / (1 << 20);
 
 } // namespace

@@ -6,11 +6,11 @@
 
 namespace echinus {
 
-/// The displacement of a moving collider's material since the previous frame, at any point that it occupies
-/// now: p - previous_pose(pose^-1(p)), an affine function of p. Not velocity times time, whose error for a
-/// rotation would push particles outwards a little in every frame.
+/// The displacement of a moving collider's material since the previous frame, at any point p that it occupies
+/// now: p - previous_pose(pose^-1(p)), an affine function of p. Velocity times time would have an error for a
+/// rotation, which would push particles outwards a little in every frame.
 struct MaterialMotion {
-    Vec3f turn_x, turn_y, turn_z; ///< rows of a matrix; 0 for a collider that stands still
+    Vec3f turn_x, turn_y, turn_z; ///< rows of a matrix; 0 for a collider at rest
     Vec3f centre, shift;
 
     MaterialMotion() = default;
@@ -22,7 +22,7 @@ struct MaterialMotion {
         turn_x = Vec3f(turn.row_x);
         turn_y = Vec3f(turn.row_y);
         turn_z = Vec3f(turn.row_z);
-        // The centre was rounded to single precision; the shift makes up for it.
+        // The centre was rounded to single precision; the shift compensates for this.
         shift =
             Vec3f(turn * (Vec3d(centre) - pose.translation) + pose.translation - previous_pose.translation);
     }

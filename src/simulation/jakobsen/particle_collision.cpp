@@ -16,7 +16,7 @@ namespace echinus {
 
 namespace {
 
-/// As the solver's options have them, whose collision this is.
+/// The options of the solver that has this kind of collision.
 SimulationOptions simulation_options(double thickness, const ParticleCollisionOptions& options) {
     SimulationOptions all;
     all.solver = JakobsenOptions{};
@@ -27,7 +27,7 @@ SimulationOptions simulation_options(double thickness, const ParticleCollisionOp
     return all;
 }
 
-/// NaN is not.
+/// False for NaN.
 bool is_sane(const Vec3f& p) {
     constexpr float kFarthest = ParticleCollision::kFarthest;
     return std::fabs(p.x) <= kFarthest && std::fabs(p.y) <= kFarthest && std::fabs(p.z) <= kFarthest;
@@ -37,7 +37,7 @@ bool is_sane(const Vec3f& p) {
     throw Error(ErrorCode::InvalidOptions, sentence);
 }
 
-/// Words are put together only for an error, as they take memory.
+/// Texts are composed only for an error, since they need memory.
 void require_valid(const SolverStep& step, double seconds) {
     if (!(seconds > 0 && std::isfinite(seconds)))
         fail("a step takes " + number_text(seconds) + " seconds; it must be a finite time above 0");
@@ -71,13 +71,13 @@ struct ParticleCollision::State {
 
     SimulationOptions options;
     std::vector<Collider> colliders;
-    std::vector<std::optional<RigidTransform>> next; ///< by collider, where the step that comes leads it
-    std::vector<double> frictions;                   ///< by collider
+    std::vector<std::optional<RigidTransform>> next; ///< [collider] the pose to which the next step leads it
+    std::vector<double> frictions;                   ///< [collider]
     Workers workers;
     Particles particles;
-    std::optional<Collisions> collisions; ///< none before the first step, and where all begin anew
+    std::optional<Collisions> collisions; ///< none before the first step, and if all particles start again
     std::vector<std::uint32_t> restarted; ///< in the step that begins
-    std::vector<std::uint32_t> corrected; ///< with room for all
+    std::vector<std::uint32_t> corrected; ///< with capacity for all
     SimulationProfile profile;
 };
 
@@ -102,7 +102,7 @@ void ParticleCollision::State::begin_step(const SolverStep& step) {
     load_ends(step);
 }
 
-/// Finds the particles that do not begin where the last step ended, too.
+/// Loads the starts of the step, and finds the particles that do not begin where the last step ended.
 void ParticleCollision::State::load_start(const SolverStep& step) {
     restarted.clear();
     for (std::size_t i = 0; i < step.positions.size(); ++i) {
@@ -143,7 +143,7 @@ void ParticleCollision::State::write_back(const SolverStep& step, double seconds
     }
 }
 
-/// Positions as the solver has put them are still in the step.
+/// The step still contains the positions that the solver chose.
 Vec3f ParticleCollision::State::corrected_velocity(std::size_t i, const SolverStep& step,
                                                    double seconds) const {
     const Vec3d sent = Vec3d(step.positions[i]) - Vec3d(particles.frame_start[i]);

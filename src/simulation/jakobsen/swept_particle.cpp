@@ -13,7 +13,7 @@ SweptParticle::SweptParticle(const ColliderNow& collider, const FreePlaces& free
       position_local_(collider.local.point_to_local(position_)), was_free_(free_places.has(i)),
       free_local_(was_free_ ? free_places.local(i, particles) : Vec3f{}) {}
 
-/// Of a particle that was free.
+/// Whether a particle that was free is free at this position.
 bool SweptParticle::is_free_at(const Vec3f& place_local) const {
     if (sweep(now_.map, free_local_, place_local).found()) return false;
     // For a closed surface, a sweep without a crossing implies this too.
@@ -43,18 +43,18 @@ std::optional<Placement> SweptParticle::rescued_before(const SweepHit& crossing)
                       free_normal(crossing));
 }
 
-/// A particle that crossed nothing, but is nearer to the surface than the guard.
+/// Rescues a particle that crossed nothing, but is nearer to the surface than the guard.
 std::optional<Placement> SweptParticle::rescued_from_guard() const {
     const Contact nearest = stretched_contact(now_.map, position_local_, now_.guard, now_.scale);
     if (nearest.found())
         if (const auto found = first_free({4 * now_.guard, 2 * now_.guard}, nearest.point, nearest.normal))
             return found;
-    // There may be no more room than this.
+    // There may not be more room.
     if (is_free_at(position_local_)) return Placement{position_, step_};
     return std::nullopt;
 }
 
-/// A particle that began inside: to the nearest point, and beyond.
+/// Rescues a particle that began inside: to the nearest point and beyond.
 std::optional<Placement> SweptParticle::rescued_from_inside() const {
     const Contact nearest = stretched_contact(now_.map, position_local_, 0, now_.scale);
     return first_free({now_.thickness, now_.thickness / 8, 4 * now_.guard, 2 * now_.guard}, nearest.point,
@@ -70,8 +70,8 @@ std::optional<Placement> SweptParticle::first_free(std::initializer_list<float> 
     return std::nullopt;
 }
 
-/// At a place, if the particle is free there after rounding. Of its motion the part along the surface
-/// remains, less friction.
+/// Puts the particle in a position if it is free there after rounding. The tangential part of its motion
+/// remains, reduced by friction.
 std::optional<Placement> SweptParticle::put(const Vec3f& target_body, const Vec3f& normal_body) const {
     const Vec3f target = now_.body.point_to_world(target_body);
     const Vec3f target_local = now_.local.point_to_local(target);
@@ -88,7 +88,8 @@ std::optional<Placement> SweptParticle::taken_back() const {
     const Vec3f moved_along = now_.body.point_to_world(now_.to_body(free_local_));
     const Contact nearest = stretched_contact(now_.map, free_local_, now_.thickness, now_.scale);
     const Vec3f out = now_.body.normal_to_world(nearest.normal);
-    // Rounding to float may lead through a surface that is very near: away from it, by more and more.
+    // Rounding to floats may cross a surface that is very near, so the particle is moved away from it by
+    // increasing distances.
     float gap = 0;
     for (int attempt = 0; attempt < 16; ++attempt) {
         const Vec3f target = moved_along + out * gap;

@@ -12,29 +12,32 @@
 
 namespace echinus {
 
-/// One particle, and its path from where it was last free of a collider with an exact map.
+/// One particle, and its path from its last position free of a collider with an exact map.
 ///
-/// A particle is *free* when it is outside and the chord from that place, both in the map's frame, crosses no
-/// surface. It is *unproven* while that is not certain: the lattice rounds, so a place nearer to the surface
-/// than the guard proves nothing. It is *lost* when it was free once and is not free now.
+/// A particle is *free* if it is outside and the chord from that position, both in the map's frame, crosses
+/// no surface. It is *unproven* while that is not certain: the lattice rounds, so a position nearer to the
+/// surface than the guard proves nothing. It is *lost* if it was free once and is not free now.
 class SweptParticle {
   public:
     SweptParticle(const ColliderNow& collider, const FreePlaces& free_places, std::size_t i,
                   const Particles& particles);
 
-    /// A particle that was never free need only be outside.
+    /// A particle that was never free only has to be outside.
     bool is_unproven() const;
     bool is_lost() const { return was_free_ && !is_free_at(position_local_); }
 
-    /// Where the chord meets the surface first. @pre the particle was free once
+    /// The first crossing of the chord with the surface. @pre the particle was free once
     SweepHit crossing() const { return sweep(now_.map, free_local_, position_local_); }
-    /// The normal of the face at the crossing, along the body's axes, towards where the particle came from.
+    /// The normal of the face at the crossing, along the body's axes, towards the side from which the
+    /// particle came.
     Vec3f free_normal(const SweepHit& crossing) const;
 
-    /// A free place for an unproven particle: before the crossing, at the thickness or what room there is; or
-    /// where it was free last; or where it is, in a narrow place. Its velocity into the surface is gone.
+    /// A free position for an unproven particle: before the crossing, at the thickness or as far as there is
+    /// room; or its last free position; or its present one, if there is little room. Its velocity into the
+    /// surface is removed.
     std::optional<Placement> rescued() const;
-    /// Where the particle was free last, moved along with the collider, at rest on it; if it is free there.
+    /// The last free position of the particle, moved along with the collider, at rest on it; none if it is
+    /// not free there.
     std::optional<Placement> taken_back() const;
 
   private:

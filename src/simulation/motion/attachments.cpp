@@ -8,7 +8,7 @@ namespace echinus {
 
 namespace {
 
-/// Axes of a face: along its first edge, along its normal, and across.
+/// The axes of a face: along its first edge, along its normal, and across.
 struct FaceAxes {
     Vec3f along, up, across;
 
@@ -16,7 +16,7 @@ struct FaceAxes {
         const Vec3f edge = corners[1] - corners[0];
         const Vec3f area = cross(edge, corners[2] - corners[0]);
         const float edge_length = length(edge), size = length(area);
-        // A face without area has none.
+        // A face without area has no axes.
         if (!(edge_length > 0) || !(size > 0)) return;
         along = edge * (1 / edge_length);
         up = area * (1 / size);

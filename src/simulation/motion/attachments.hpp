@@ -14,21 +14,21 @@
 
 namespace echinus {
 
-/// Particles that move with a collider: rigidly, or with its surface where that deforms. Their places are
-/// computed from the pose and the surface alone, so that no error adds up.
+/// Particles that move with a collider: rigidly, or with its surface if that deforms. Their positions are
+/// computed from the pose and the surface alone, so that errors do not accumulate.
 class Attachments {
   public:
-    /// Where the deformable and the colliders are now, their places are right.
+    /// The present positions of the deformable and the colliders determine where the particles are attached.
     Attachments(const Deformable& deformable, const std::vector<Collider>& colliders);
 
-    /// From now on the surface of a collider deforms: its particles stay beside the point of a face that is
-    /// nearest to them now, at the same place as that face sees it.
+    /// From now on the surface of a collider deforms: each of its particles keeps its present position
+    /// relative to the point and the axes of the nearest face.
     /// @pre the collider has an exact map
     void hold_on_to_surface(std::size_t collider, const Collider& now, const DeformingCollider& surface);
 
-    /// Puts the particles where the colliders' poses take them.
-    /// @param surfaces  [collider_count] none where they never deformed
-    /// @param share     of this frame that is over, from 0 to 1
+    /// Moves the particles to where the colliders' poses take them.
+    /// @param surfaces  [collider_count] none for colliders that never deformed
+    /// @param share     the share of this frame that has passed, from 0 to 1
     void follow(const std::vector<Collider>& colliders,
                 std::span<const std::optional<DeformingCollider>> surfaces, float share,
                 PointArrays& positions) const;
@@ -37,11 +37,11 @@ class Attachments {
     void archive(StateArchive& state, std::span<const std::optional<DeformingCollider>> surfaces);
 
   private:
-    /// On a face, and beside it.
+    /// A point on a face, and an offset from it.
     struct Hold {
         Triangle face;
-        std::array<float, 3> shares; ///< of its corners in the point of it
-        Vec3f aside;                 ///< from there, along the face's own axes
+        std::array<float, 3> shares; ///< of the corners in the point
+        Vec3f aside;                 ///< the offset, along the axes of the face
     };
     struct Place {
         std::uint32_t particle, collider;

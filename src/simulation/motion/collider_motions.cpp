@@ -43,7 +43,7 @@ void ColliderMotions::begin_frame(std::vector<Collider>& colliders, double end_t
             motion.next = motion.body->after(colliders[c].pose, frame_seconds);
         }
         if (!motion.keys.empty()) motion.next = pose_at(motion.keys, end_time);
-        // A collider that stays where it was led does not move at all, not even by what was rounded.
+        // A collider that is led to its present pose does not move at all, not even by rounding.
         if (motion.next && motion.next != motion.last)
             head_for(colliders[c], *motion.next, frame_seconds);
         else

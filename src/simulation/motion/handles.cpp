@@ -26,7 +26,7 @@ Handles::Handles(const Deformable& deformable) {
     }
 }
 
-/// A particle at rest stays where it is, not even moved by rounding.
+/// A particle whose path is at rest is not moved, not even by rounding.
 bool Handles::moves(const Held& held, double from_time, double to_time) {
     const std::vector<PoseKey>& keys = held.handle.keys;
     return !held.is_open && !keys.empty() && to_time > keys.front().time && from_time < keys.back().time;

@@ -11,23 +11,23 @@
 
 namespace echinus {
 
-/// Times of frames are multiples of a rounded step: a frame that begins so little before something is due has
-/// it, in seconds.
+/// In seconds. Times of frames are multiples of a rounded step, so whatever is due up to this long after a
+/// frame begins belongs to that frame.
 inline constexpr double kRoundingOfTimes = 1e-9;
 
-/// @param now  when a frame begins
+/// @param now  when the frame begins
 inline bool is_due(double due, double now) {
     return now + kRoundingOfTimes >= due;
 }
 
-/// The handles of a deformable: where paths lead the particles that they hold, and when they let go. Places
-/// are computed from the path alone, so that no error adds up.
+/// The handles of a deformable: the paths along which they lead their particles, and the times at which they
+/// release them. Positions are computed from the path alone, so that errors do not accumulate.
 class Handles {
   public:
-    /// Where the deformable is now, its particles are right for the time 0.
+    /// The deformable's present positions are those of its held particles at time 0.
     explicit Handles(const Deformable& deformable);
 
-    /// Lets go of what is due when a frame begins. @param let_go  (particle) is called for each
+    /// Releases the particles that are due when a frame begins. @param let_go  (particle) is called for each
     template <typename LetGo>
     void begin_frame(double time, const LetGo& let_go) {
         for (Held& held : held_) {
@@ -36,14 +36,14 @@ class Handles {
             for (const std::uint32_t particle : held.handle.particles) let_go(particle);
         }
     }
-    /// Puts the particles that are held where paths lead them from one time to another.
+    /// Moves held particles along their paths, from one time to another.
     void follow(double from_time, double to_time, PointArrays& positions) const;
-    /// Is nothing to come?
+    /// Whether all paths have ended and no release is to come.
     bool all_done(double time) const;
-    /// All is elsewhere: paths and what is held.
+    /// Moves everything: paths and the particles on them.
     void move(const RigidTransform& motion);
 
-    /// @param set_held  (particle, is_held) is called for each after reading
+    /// @param set_held  (particle, is_held) is called for each particle after reading
     template <typename SetHeld>
     void archive(StateArchive& state, const SetHeld& set_held) {
         state.pose(moved_);
@@ -57,14 +57,14 @@ class Handles {
   private:
     struct Held {
         Handle handle;
-        std::vector<Vec3d> places; ///< of its particles, in the frame that follows the path
-        bool is_open = false;      ///< it has let go
+        std::vector<Vec3d> places; ///< positions of its particles, in the frame that follows the path
+        bool is_open = false;      ///< whether it has released its particles
     };
     static bool moves(const Held& held, double from_time, double to_time);
     Vec3d place_at(const Held& held, std::size_t number, const RigidTransform& pose) const;
 
     std::vector<Held> held_;
-    RigidTransform moved_; ///< by which all has been set elsewhere
+    RigidTransform moved_; ///< the motion by which all handles have been moved
 };
 
 } // namespace echinus

@@ -15,18 +15,18 @@ namespace {
 
 constexpr double kLeastMass = 1e-9, kMostMass = 1e15; // kg
 
-/// Of a solid of density 1.
+/// The integrals over a solid of density 1.
 struct Solid {
     double volume = 0;
-    Vec3d moment;       ///< the integral of the places
-    Matrix3 products{}; ///< of their outer products
+    Vec3d moment;       ///< the integral of the positions
+    Matrix3 products{}; ///< the integral of their outer products
 
     void add_outer(const Vec3d& v, double weight) {
         products[0] += v * (v.x * weight);
         products[1] += v * (v.y * weight);
         products[2] += v * (v.z * weight);
     }
-    /// The tetrahedron between the origin and a face.
+    /// Adds the tetrahedron between the origin and a face.
     void add(const Vec3d& a, const Vec3d& b, const Vec3d& c) {
         const double share = dot(a, cross(b, c)) / 6;
         volume += share;
@@ -52,7 +52,7 @@ RigidBody::RigidBody(const TriangleMesh& surface, double mass, const Collider& c
     require_option(solid.volume != 0, name + " encloses nothing, so it has no centre of mass");
     const Vec3d centre = solid.moment * (1 / solid.volume);
     solid.add_outer(centre, -solid.volume);
-    const double density = mass / solid.volume; // negative where faces look inwards, as the integrals are
+    const double density = mass / solid.volume; // negative, like the integrals, if faces look inwards
     const double trace = solid.products[0].x + solid.products[1].y + solid.products[2].z;
     for (std::size_t k = 0; k < 3; ++k) inertia_[k] = solid.products[k] * -density;
     inertia_[0].x += trace * density;
@@ -95,9 +95,9 @@ double RigidBody::left_of(const Vec3d& gravity) const {
     return size_sq > 0 ? std::clamp(dot(gained_, gravity) / size_sq, 0.0, 1.0) : 0;
 }
 
-/// Turns a free body by its angular momentum: by rotations about its principal axes, one after another and
-/// back (Strang), each of which keeps the momentum exactly, so that the energy neither grows nor falls in the
-/// long run (McLachlan 1993; Reich 1994).
+/// Turns a free body according to its angular momentum, by rotations about its principal axes in turn and in
+/// reverse order (Strang). Each of them keeps the momentum exactly, so that the energy neither grows nor
+/// falls in the long run (McLachlan 1993; Reich 1994).
 Rotation RigidBody::turned(Rotation rotation, double seconds) const {
     const Eigensystem principal = principal_moments();
     const double least = *std::min_element(principal.values.begin(), principal.values.end());

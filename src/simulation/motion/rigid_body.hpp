@@ -8,33 +8,35 @@
 
 namespace echinus {
 
-/// A collider that moves freely: a solid of uniform density. Momentum is what it keeps from step to step, so
-/// that nothing is lost as it turns.
+/// A collider that moves freely: a solid of uniform density. Its state from step to step is the momentum, so
+/// that none is lost as it turns.
 class RigidBody {
   public:
-    RigidBody() = default; ///< to be read from a state
-    /// It goes on as the collider moves. @param surface  closed, in the body frame
-    /// @throws Error InvalidOptions where the surface encloses nothing. @param name  of the collider
+    RigidBody() = default; ///< for reading from a state
+    /// Continues the motion of the collider. @param surface  closed, in the body frame @param name  of the
+    /// collider
+    /// @throws Error InvalidOptions if the surface encloses nothing
     RigidBody(const TriangleMesh& surface, double mass, const Collider& collider, const std::string& name);
 
-    /// Adds to its momentum what a load about the pose's translation, and gravity, do in this time.
+    /// Adds the change of momentum by gravity and by a load about the pose's translation during this time.
     void push(const RigidTransform& pose, const Load& load, const Vec3d& gravity, double seconds);
-    /// Where its velocities lead it from a pose.
+    /// The pose to which its velocities lead from a pose.
     RigidTransform after(const RigidTransform& pose, double seconds) const;
-    /// Where gravity leads it, too.
+    /// The same, including gravity.
     RigidTransform after(const RigidTransform& pose, const Vec3d& gravity, double seconds) const;
-    /// The share of gravity by which it was accelerated in the last step: what contacts have left of it.
+    /// The share of gravity by which it accelerated in the last step; contacts took the rest.
     double left_of(const Vec3d& gravity) const;
     /// The velocities of a collider that moves with it.
     void give_velocities(Collider& collider) const;
 
     double mass() const { return mass_; }
     Vec3d centre() const { return centre_; }
-    /// Of the places of its mass about the centre, in the body frame: variances, and their axes.
+    /// The variances of its mass distribution about the centre, and their axes, in the body frame.
     Eigensystem second_moments() const;
-    /// Is no point of it faster than so much? A radian a second counts as a unit of length.
+    /// Whether its linear and its angular velocity are no greater than this. A radian per second counts as a
+    /// unit of length per second.
     bool is_slower_than(double speed) const;
-    /// It is elsewhere, turned.
+    /// Turns its velocities with a body that has been moved and turned.
     void turn(const Rotation& rotation);
     void archive(StateArchive& state);
 
@@ -45,11 +47,12 @@ class RigidBody {
     bool has_inertia() const;
 
     double mass_ = 1;
-    Vec3d centre_;                                       ///< of mass, in the body frame
-    Matrix3 inertia_{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}}; ///< about it, in the body frame; three columns
-    // Of the centre and about it, in the world's axes.
+    Vec3d centre_; ///< of mass, in the body frame
+    Matrix3 inertia_{
+        {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}}; ///< about the centre, in the body frame; three columns
+    // The velocity of the centre, and the angular momentum and velocity about it, along the world's axes.
     Vec3d velocity_, angular_momentum_, angular_velocity_;
-    Vec3d gained_; ///< the acceleration of the centre by the last push
+    Vec3d gained_; ///< the acceleration of the centre by the last push()
 };
 
 } // namespace echinus

@@ -1,4 +1,4 @@
-// Setting colliders and the deformable elsewhere between two frames.
+// Moves colliders and the deformable to other positions between two frames.
 
 #include "simulation/solver.hpp"
 #include "simulation/start/start_state.hpp"
@@ -46,7 +46,7 @@ void Solver::carry_out(const Teleport& teleport) {
         require_option((goes[attachment.collider] != 0) == teleport.deformable,
                        "a teleport must move particle " + std::to_string(attachment.particle) + " and " +
                            name_of_collider(attachment.collider) + ", to which it is attached, together");
-    // Things that go together stay to each other as they were.
+    // Things that are moved together keep their relative positions.
     std::vector<Vec3f> places = deformable.positions;
     if (teleport.deformable)
         for (Vec3f& place : places) place = Vec3f(motion.to_world(Vec3d(place)));

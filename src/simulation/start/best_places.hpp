@@ -11,8 +11,8 @@
 
 namespace echinus {
 
-/// Of several states of particles, all made from one start, the first of those in which the fewest pairs
-/// intersect and among them edges are stretched least.
+/// From several states of particles that were made from one start, keeps the first with the fewest
+/// intersecting pairs and, among these, the least stretch of edges.
 class BestPlaces {
   public:
     BestPlaces(const Elements& elements, const std::vector<Vec3f>& start)
@@ -25,7 +25,7 @@ class BestPlaces {
         cost_ = cost;
         positions_ = positions;
     }
-    /// @pre a state was considered
+    /// @pre a state has been considered
     const std::vector<Vec3f>& get() const { return positions_; }
     std::size_t pair_count() const { return cost_.first; }
 

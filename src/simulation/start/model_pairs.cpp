@@ -13,7 +13,7 @@ namespace echinus {
 
 namespace {
 
-/// The mesh and a particle are each off by less than a step.
+/// The positions of the mesh and of a particle are each inexact by less than a step.
 constexpr float kTouchInSteps = 2;
 
 } // namespace

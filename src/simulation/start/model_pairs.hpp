@@ -10,20 +10,21 @@
 
 namespace echinus {
 
-/// Which faces of a deformable's surface must be parted from a collider's before the first frame: those that
-/// intersect it, and those that touch it: within two steps of the map's lattice a face inside is not told
-/// from one outside.
+/// The faces of a deformable's surface that must be separated from a collider before the first frame: those
+/// that intersect it, and those that touch it. Within two steps of the map's lattice, a face inside cannot be
+/// distinguished from one outside.
 class ModelPairs {
   public:
-    /// @param passes  [particle_count] 1 for particles that the collider lets through, or none
+    /// @param passes  [particle_count] 1 for particles that the collider lets through, or empty
     /// @pre the collider has an exact map
     ModelPairs(const Collider& collider, std::vector<std::uint8_t> passes);
 
     struct Found {
-        std::vector<FacePair> intersecting;  ///< ascending
-        std::vector<std::uint32_t> touching; ///< faces of the surface, ascending; none that intersects
+        std::vector<FacePair> intersecting; ///< ascending
+        std::vector<std::uint32_t>
+            touching; ///< faces of the surface, ascending; without those that intersect
     };
-    /// @param surface  in the world, with edges and vertices as faces without area
+    /// @param surface  in the world, including edges and vertices as faces without area
     Found with(const TriangleMesh& surface) const;
 
     bool passes(std::size_t particle) const { return !passes_.empty() && passes_[particle] != 0; }

@@ -24,16 +24,17 @@ namespace echinus {
 
 namespace {
 
-/// Elements that intersect go a step in each round. A step is half a thickness, or this share of an edge.
+/// Intersecting elements move by a step in each round. A step is half a thickness or this share of an edge.
 constexpr int kMostRounds = 200;
-constexpr int kPatience = 40;       // a face that is raised along a tip intersects it all the way,
+constexpr int kPatience = 40;       // a face that is raised along a tip intersects it all the time,
 constexpr float kStepGrowth = 1.1F; // in steps that grow meanwhile
 constexpr float kStepShare = 1.0F / 16;
 
-/// Surfaces that a particle on its way out of nested parts may come to.
+/// The largest number of surfaces that a particle may cross on its way out of nested parts.
 constexpr int kMostCrossings = 64;
 
-/// The normals of a part that is about closed cancel out, and it has no front: their sum over the area.
+/// The least sum of normals of a part over its area: the normals of a nearly closed part cancel out, and it
+/// has no front.
 constexpr float kLeastFront = 0.1F;
 
 enum class Way { Nearest, Forwards, Backwards };
@@ -54,7 +55,7 @@ struct Model {
     ModelPairs pairs;
     Collider collider; ///< with its exact map
     float thickness;
-    double reach; ///< in the world, farther than from any point inside to any outside
+    double reach; ///< in the world; no straight path inside the model is longer
 
     Model(const Collider& of, std::vector<std::uint8_t> passes, const SimulationOptions& options)
         : pairs(of, std::move(passes)), collider(with_map(of, *map_of_surface(of))) {
@@ -65,7 +66,7 @@ struct Model {
                 std::max({std::fabs(s.x), std::fabs(s.y), std::fabs(s.z)});
     }
 
-    /// The first place outside on a straight way out, at the thickness.
+    /// The first position outside on a straight path out, at the thickness.
     std::optional<Vec3f> out_along(Vec3f from, const Vec3f& direction) const {
         for (int i = 0; i < kMostCrossings; ++i) {
             const Vec3f far = from + direction * static_cast<float>(reach);
@@ -82,7 +83,7 @@ struct Model {
     }
 };
 
-/// One way out, from the same start.
+/// One method of moving out, from the common start.
 class Attempt {
   public:
     Attempt(const Elements& elements, const std::vector<float>& inverse_masses,
@@ -90,7 +91,7 @@ class Attempt {
         : elements_(elements), inverse_masses_(inverse_masses), models_(models), directions_(start.size()),
           positions_(start), edge_length_(mean_edge_length(elements, start)) {}
 
-    /// Pairs that intersect, and particles inside.
+    /// The number of intersecting pairs and of particles inside.
     std::size_t tangle_count() const {
         std::size_t count = inside_count();
         for (const Model& model : models_) {
@@ -130,7 +131,7 @@ class Attempt {
         return mesh;
     }
 
-    /// Gives all particles of a connected part that is inside or intersects its mean normal.
+    /// Gives all particles of a connected part that is inside or intersects a model the part's mean normal.
     void choose_directions(std::span<const std::uint32_t> all, float sign) {
         std::vector<std::uint8_t> tangled(elements_.all.size());
         for (const Model& model : models_) {
@@ -191,8 +192,8 @@ class Attempt {
             });
     }
 
-    /// @param judged  all that may intersect
-    /// @return those that do
+    /// @param judged  the elements that may intersect
+    /// @return those that do intersect
     std::vector<std::uint32_t> push_intersecting(const std::vector<std::uint32_t>& judged,
                                                  std::vector<std::uint8_t>& moved, BestPlaces& best) {
         std::vector<Vec3f> pushes(positions_.size());
@@ -221,8 +222,8 @@ class Attempt {
         return joined(tangled, {});
     }
 
-    /// Along the direction of its particles, which those that had none take over; or else away from the
-    /// surface.
+    /// Pushes an element in the direction of its particles, which particles without a direction adopt; if
+    /// there is none, away from the surface.
     void push(std::uint32_t number, const Model& model, std::vector<Vec3f>& pushes) {
         const Element& element = elements_.all[number];
         Vec3f direction{};
@@ -258,7 +259,7 @@ class Attempt {
     const Elements& elements_;
     const std::vector<float>& inverse_masses_;
     const std::vector<Model>& models_;
-    std::vector<Vec3f> directions_; ///< by particle; 0 where there is none
+    std::vector<Vec3f> directions_; ///< [particle] 0 if it has none
     std::vector<Vec3f> positions_;
     float edge_length_;
     float step_factor_ = 1;

@@ -9,15 +9,15 @@
 
 namespace echinus {
 
-/// Moves the surface of a deformable out of models where it intersects them or lies inside: particles inside
-/// out to the thickness, and then, step by step, elements that still intersect.
+/// Moves the surface of a deformable out of models if it intersects them or is inside: first particles
+/// inside, out to the thickness, and then, step by step, elements that still intersect.
 ///
-/// Three ways are tried. *Nearest*: each particle goes along the normal of the surface point that is nearest
-/// to it. *Forwards* and *backwards*: all particles of a connected part go along the mean normal of its
-/// faces, or against it. The nearest way suits a sleeve that cuts a little into an arm. It fails where
-/// particles on the two sides of a model's middle go apart, and where a tip pierces a face; with one
-/// direction for all, a plane sheet becomes a relief there. Of the ways that leave nothing intersecting, the
-/// one that stretches edges least is taken.
+/// Three methods are tried. *Nearest*: each particle moves along the normal of the surface point nearest to
+/// it. *Forwards* and *backwards*: all particles of a connected part move along the mean normal of its faces,
+/// or against it. The first method suits a sleeve that cuts a little into an arm. It fails if particles on
+/// the two sides of a model's middle move apart, or if a tip pierces a face; with one direction for all
+/// particles, a plane sheet there becomes a relief. Of the results with the fewest intersections, the one
+/// that stretches edges least is chosen.
 ///
 /// @param positions  [particle_count] of the particles; pinned ones stay where they are
 /// @return whether a particle was moved

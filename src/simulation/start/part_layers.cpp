@@ -26,14 +26,14 @@ struct Crossing {
     friend auto operator<=>(const Crossing&, const Crossing&) = default;
 };
 
-/// A particle that goes to the other side of a face.
+/// A particle that moves to the other side of a face.
 struct Step {
-    std::size_t piece_size; ///< of the particle; where nothing is cut off, that of everything
+    std::size_t piece_size; ///< of the particle; if nothing is cut off, the number of all particles
     std::uint32_t particle, face;
     bool to_front;
 };
 
-/// To which side of another layer one goes where neither is cut off.
+/// The side of the other layer to which a layer moves if neither is cut off.
 enum class Side { Front, Back, Nearer };
 
 class LayerAttempt {
@@ -87,7 +87,7 @@ class LayerAttempt {
         }
     }
 
-    /// Those of the smallest pieces first.
+    /// The steps of the smallest pieces come first.
     std::vector<Step> steps_for(const std::vector<Crossing>& crossings, const std::vector<FacePair>& pairs) {
         std::vector<bool> cut(elements_.edges.size(), false);
         for (const Crossing& crossing : crossings) cut[crossing.edge] = true;
@@ -119,7 +119,7 @@ class LayerAttempt {
         return steps;
     }
 
-    /// The connected groups of the elements that intersect.
+    /// The connected groups of intersecting elements.
     UnionFind layers_of(const std::vector<FacePair>& pairs) const {
         UnionFind layers(positions_.size());
         for (const auto& pair : pairs)
@@ -139,7 +139,7 @@ class LayerAttempt {
         return dot(positions_[particle] - positions_[elements_.all[face].vertices[0]], normal_of(face));
     }
 
-    /// Of two that pass through each other only the first gives way in a round.
+    /// Of two particles or faces that pass through each other, only the first moves in a round.
     /// @return whether a particle was moved
     bool take(const std::vector<Step>& steps) {
         const auto pinned = [&](std::uint32_t v) { return inverse_masses_[v] == 0; };

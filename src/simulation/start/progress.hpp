@@ -5,20 +5,20 @@
 
 namespace echinus {
 
-/// Whether rounds that part what intersects still get anywhere.
+/// Whether rounds of separating intersecting elements still make progress.
 class Progress {
   public:
-    /// @param patience  rounds in a row that may leave as much as the best one before
+    /// @param patience  the number of successive rounds that need not improve on the best round before
     explicit Progress(int patience) : patience_(patience) {}
 
-    /// @return false once that many rounds have brought nothing, or it has become far worse
+    /// @return false once that many rounds have made no progress, or the state has become far worse
     bool goes_on(std::size_t left) {
         idle_rounds_ = left < least_ ? 0 : idle_rounds_ + 1;
         if (left < least_) least_ = left;
         return idle_rounds_ < patience_ && left / kFarWorse <= least_ + kFew;
     }
 
-    /// The last round has brought nothing.
+    /// The last round has made no progress.
     bool is_idle() const { return idle_rounds_ > 0; }
 
   private:

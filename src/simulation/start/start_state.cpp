@@ -26,15 +26,15 @@ namespace {
 
 constexpr std::size_t kNamed = 3;
 
-/// @param way  of colliding that asks for this
-/// @param pinned  untangle() moves no pinned particle
+/// @param way  the kind of collision that requires this
+/// @param pinned  whether pinned particles are involved, which untangle() does not move
 std::string remedy(const SimulationOptions& options, const char* way, bool pinned = false) {
     return std::string("; move the deformable until they are apart, ") +
            (options.newton().untangle || pinned ? "" : "set untangle to separate them, ") + "or do without " +
            way;
 }
 
-/// With edges and vertices as faces without area, after the faces.
+/// The faces of the deformable, followed by its edges and vertices as faces without area.
 TriangleMesh surface_of(const Deformable& deformable, const Elements& elements) {
     TriangleMesh surface{deformable.positions, {}};
     for (const Element& element : elements.all) surface.faces.push_back(element.vertices);
@@ -48,8 +48,8 @@ std::string name_of(const Elements& elements, std::uint32_t number) {
     return "the edge from particle " + std::to_string(a) + " to " + std::to_string(b);
 }
 
-/// @param what  it does, such as "touching the box with", before their number and `noun`
-/// @param name  of one of them
+/// @param what  the fault, such as "touching the box with", which precedes the number and `noun`
+/// @param name  returns the name of one of them
 template <typename Item, typename Name>
 [[noreturn]] void refuse(const std::string& what, const std::vector<Item>& found, const char* noun,
                          const SimulationOptions& options, const char* way, const Name& name) {
@@ -97,12 +97,13 @@ void require_apart(const Deformable& deformable, const TriangleMesh& surface, co
     if (!touching.empty())
         refuse("touching " + name + " with", touching, "face", options, "collision of surfaces",
                [&](std::uint32_t face) { return name_of(elements, face); });
-    // Where nothing intersects, a piece is inside as a whole. An open surface has no inside.
+    // If nothing intersects, a piece is either entirely inside or entirely outside. An open surface has no
+    // inside.
     if (pairs.has_inside())
         require_outside(deformable, passes, with_map(collider, *map_of_surface(collider)), options, name);
 }
 
-/// Layers that could come no nearer to each other than this would hold the deformable where it is. Particles
+/// Layers that cannot come nearer to each other than this would keep the deformable in place. Particles
 /// without edges have no layers.
 void require_resolved(const Deformable& deformable, const Elements& elements) {
     float extent = 0;
@@ -124,7 +125,7 @@ void require_resolved(const Deformable& deformable, const Elements& elements) {
 void require_apart(const Deformable& deformable, const std::vector<Collider>& colliders,
                    const SimulationOptions& options) {
     const Elements elements = elements_of(deformable);
-    // First, since floats that coarse make faces meet, too.
+    // This comes first, because with such coarse floats faces also intersect.
     if (options.layers_collide()) require_resolved(deformable, elements);
     const TriangleMesh surface = surface_of(deformable, elements);
     for (std::size_t i = 0; i < colliders.size(); ++i)

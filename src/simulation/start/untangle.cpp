@@ -12,10 +12,11 @@ namespace echinus {
 
 namespace {
 
-/// Layers that are parted may come into a model, and so on.
+/// Layers that are separated may be moved into a model, and the reverse.
 constexpr int kMostTurns = 4;
 
-/// Of the thickness of layers, and of the mean edge: layers are parted by so much. Contact does the rest.
+/// The gap by which layers are separated, as a share of their thickness, and its limits as shares of the mean
+/// edge length. Contact does the rest.
 constexpr float kGapInThicknesses = 0.5F;
 constexpr float kLeastGap = 1.0F / 32;
 constexpr float kMostGap = 1.0F / 8;
@@ -32,7 +33,7 @@ void untangle(Deformable& deformable, const std::vector<Collider>& colliders,
         std::clamp(kGapInThicknesses * thickness, kLeastGap * edge_length, kMostGap * edge_length);
     for (int turn = 0; turn < kMostTurns; ++turn) {
         const bool left_models = part_from_models(elements, deformable, colliders, options, positions);
-        const bool face_moves = turn % 2 != 0; // the other way round has led into a model
+        const bool face_moves = turn % 2 != 0; // moving the particle instead has led into a model
         const bool left_itself = options.layers_collide() &&
                                  part_layers(elements, deformable.inverse_masses, gap, face_moves, positions);
         if (!left_models && !left_itself) break;

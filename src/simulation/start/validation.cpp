@@ -65,7 +65,7 @@ void require_option(bool condition, const std::string& sentence) {
 void require_valid(const RigidTransform& pose, const std::string& owner) {
     if (!is_finite(Vec3f(pose.translation)))
         fail(owner + " has a translation that is not finite, or too large for a float");
-    // As far as rounding to float leads a unit quaternion, and more. Written so that NaN fails it.
+    // More than rounding a unit quaternion to floats changes its length. Written so that it is false for NaN.
     constexpr double kTolerance = 1e-4;
     const double size = length(pose.rotation);
     if (!(size >= 1 - kTolerance && size <= 1 + kTolerance))
@@ -90,7 +90,7 @@ void require_valid(const SimulationOptions& options) {
 
 namespace {
 
-/// As models are: distances, areas and volumes of what is so large are floats, too.
+/// The same bound as for models: distances, areas and volumes of points within it are still floats.
 bool is_within_reach(const Vec3f& position) {
     constexpr float kFarthest = 1e15F;
     return std::max({std::fabs(position.x), std::fabs(position.y), std::fabs(position.z)}) <= kFarthest;
@@ -164,9 +164,9 @@ void require_valid(const Deformable& deformable) {
 
 namespace {
 
-/// Positions are floats. Does gravity move a particle in a frame by so little that their rounding decides?
+/// Positions are floats. Does gravity move a particle so little in a frame that rounding dominates?
 bool rounding_decides(const Deformable& deformable, const SimulationOptions& options) {
-    constexpr double kFewDigits = 5; // rounding takes a tenth of gravity
+    constexpr double kFewDigits = 5; // rounding changes gravity by a tenth
     float largest = 0;
     for (const Vec3f& p : deformable.positions)
         largest = std::max({largest, std::fabs(p.x), std::fabs(p.y), std::fabs(p.z)});
@@ -200,7 +200,7 @@ void require_solver(const Deformable& deformable, const SimulationOptions& optio
 
 namespace {
 
-/// @param name  of what names them
+/// @param name  of the item that refers to them
 void require_there(const std::string& name, std::uint32_t particle, std::uint32_t collider,
                    std::size_t particle_count, std::size_t collider_count) {
     if (particle >= particle_count)

@@ -12,7 +12,7 @@
 
 namespace echinus {
 
-/// How errors call a collider.
+/// The name of a collider in errors.
 inline std::string name_of(const Collider& collider, std::size_t number) {
     return collider.name.empty() ? "collider " + std::to_string(number) : collider.name;
 }
@@ -22,15 +22,15 @@ inline std::string name_of(const Collider& collider, std::size_t number) {
 // Each throws Error InvalidOptions with a sentence that names the field or the index at fault.
 
 void require_option(bool condition, const std::string& sentence);
-/// NaN is outside of every range.
+/// NaN is outside every range.
 void require_within(const char* name, double value, double least, double most);
 void require_within(const char* name, const std::optional<double>& value, double least, double most);
 void require_within(const char* name, std::span<const double> values, double least, double most);
-/// Units; that of simulations in bindings/options.toml.
+/// In the caller's unit; equal to the limit for simulations in bindings/options.toml.
 inline constexpr double kMostThickness = 1e9;
-/// Of each number that has a range in bindings/options.toml.
-/// @param name  of an option that only this solver has, and not the one that is chosen
-/// @throws Error InvalidOptions unless it has its default
+/// Checks each number that has a range in bindings/options.toml.
+/// @param name  of an option that only `solver` has, which is not the chosen solver
+/// @throws Error InvalidOptions unless the option has its default
 void require_default(const char* name, bool is_default, const char* solver);
 void require_ranges(const MeshClothOptions& options);
 void require_ranges(const SoftBodyOptions& options);
@@ -44,15 +44,15 @@ void require_valid(const std::vector<Collider>& colliders, const SimulationOptio
 /// @pre the deformable is valid
 void require_valid_attachments(const Deformable& deformable, std::size_t collider_count);
 void require_valid_filters(const Deformable& deformable, std::size_t collider_count);
-/// @param owner  of the pose, as the sentence begins: "collider 0"
+/// @param owner  of the pose; begins the sentence: "collider 0"
 void require_valid(const RigidTransform& pose, const std::string& owner);
 
 /// @param owner  of the keys: "collider 0"
 void require_valid(const std::vector<PoseKey>& keys, const std::string& owner);
-/// @pre the deformable is valid but for its handles
+/// @pre the deformable is valid except for its handles
 void require_valid_handles(const Deformable& deformable);
 
-/// How errors call the cache of a collider.
+/// The name of a collider's cache in errors.
 std::string name_of(const VertexCache& cache);
 /// @param vertex_count  of the collider's mesh
 void require_valid(const VertexCache& cache, std::size_t vertex_count, const std::string& owner);

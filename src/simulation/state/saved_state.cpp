@@ -1,5 +1,5 @@
-// The bytes of a saved state: a header, which says what they are and of what simulation, and what
-// Solver::archive() writes.
+// The bytes of a saved state: a header, which identifies the format and the simulation, and the output of
+// Solver::archive().
 
 #include "files/atomic_file.hpp"
 #include "files/read_file.hpp"
@@ -17,15 +17,15 @@ namespace echinus {
 namespace {
 
 constexpr std::array<char, 8> kMagic{'E', 'C', 'H', 'S', 'T', 'A', 'T', 'E'};
-/// To be raised with every change of what is archived, or of what follows from it.
+/// To be increased with every change of what is archived or of what is derived from it.
 constexpr std::uint64_t kVersion = 12;
 
-/// Plain numbers without padding, in the order of the machine's bytes.
+/// Plain numbers without padding, in the byte order of the machine.
 struct Header {
     std::array<char, 8> magic = kMagic;
     std::uint64_t version = kVersion;
     std::uint64_t byte_count = 0; ///< after the header
-    std::uint64_t checksum = 0;   ///< XXH64 of these
+    std::uint64_t checksum = 0;   ///< XXH64 of these bytes
 };
 
 void archive(StateArchive& state, StateFingerprint& fingerprint) {
@@ -34,7 +34,7 @@ void archive(StateArchive& state, StateFingerprint& fingerprint) {
     state.list(fingerprint.colliders);
 }
 
-/// @return what follows the header
+/// @return the bytes after the header
 std::span<const std::byte> checked(std::span<const std::byte> bytes, const std::string& name) {
     Header header;
     if (bytes.size() >= sizeof header) std::memcpy(&header, bytes.data(), sizeof header);
@@ -91,7 +91,7 @@ void Simulation::restore_state(std::span<const std::byte> bytes, const std::stri
     StateFingerprint saved;
     archive(state, saved);
     require_same(saved, solver_->fingerprint(), name);
-    // Into a copy, so that nothing has changed when it throws.
+    // Reads into a copy, so that nothing has changed if it throws.
     auto restored = solver_->copy();
     restored->archive(state);
     state.finish();

@@ -25,7 +25,7 @@ void Solver::archive_counts(StateArchive& state) {
         state.value(*count);
 }
 
-/// Their maps before all else that asks them.
+/// Colliders get their maps before anything that queries these is read.
 void Solver::archive_colliders(StateArchive& state) {
     motions.archive(state);
     handles_.archive(state, [&](std::uint32_t particle, bool is_held) { set_held(particle, is_held); });

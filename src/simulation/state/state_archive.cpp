@@ -9,7 +9,7 @@ namespace echinus {
 
 namespace {
 
-/// As far as drift goes, of the length of a quaternion squared.
+/// The most that drift may change the squared length of a quaternion.
 constexpr double kUnitTolerance = 1e-3;
 
 } // namespace

@@ -18,7 +18,7 @@
 
 namespace echinus {
 
-/// Types without padding, of which every pattern of bits is a value.
+/// Types without padding, of which every bit pattern is a value.
 template <typename T>
 inline constexpr bool kIsPlain = std::is_arithmetic_v<T> && !std::is_same_v<T, bool>;
 template <typename T>
@@ -27,15 +27,15 @@ template <typename T, std::size_t n>
 inline constexpr bool kIsPlain<std::array<T, n>> = kIsPlain<T>;
 
 /// Writes the state of a simulation, or reads it. Each class has one function, archive(), that goes through
-/// its part of the state for both, so that what is written and what is read cannot differ.
+/// its part of the state in both cases, so that reading and writing cannot differ.
 ///
-/// Bytes that are read may be anything: a function that reads checks whatever could lead out of an array. NaN
-/// and, in places, infinity are refused.
+/// The bytes that are read may be anything: a function that reads checks everything that could lead to an
+/// access outside an array. NaN and, in some cases, infinity are rejected.
 class StateArchive {
   public:
-    /// Writes.
+    /// An archive that writes.
     StateArchive() = default;
-    /// Reads. @param name  of the source, as errors begin
+    /// An archive that reads. @param name  of the source; begins the errors
     StateArchive(std::span<const std::byte> bytes, std::string name)
         : reads_(true), left_(bytes), name_(std::move(name)) {}
 
@@ -61,7 +61,7 @@ class StateArchive {
         choice(as_byte, std::uint8_t{1});
         v = as_byte != 0;
     }
-    /// An enumerator, or a number. @param last  that is allowed
+    /// An enumerator, or a number. @param last  the largest that is allowed
     template <typename T>
     void choice(T& v, T last) {
         auto number = static_cast<std::uint32_t>(v);
@@ -75,7 +75,7 @@ class StateArchive {
     }
     void pose(RigidTransform& v);
 
-    /// An array that has its size from the simulation.
+    /// An array whose size the simulation determines.
     template <typename T>
     void array(std::vector<T>& values) {
         static_assert(kIsPlain<T>);
@@ -85,7 +85,7 @@ class StateArchive {
         transfer(values.data(), values.size());
         for (const T& v : values) require(is_number(v));
     }
-    /// The same of finite points.
+    /// The same for finite points.
     void points(PointArrays& values);
     /// An array of any size.
     template <typename T>
@@ -95,10 +95,10 @@ class StateArchive {
         transfer(values.data(), values.size());
         for (const T& v : values) require(is_number(v));
     }
-    /// Indices below a limit, at most so many.
+    /// Indices below a limit, at most this many.
     void indices(std::vector<std::uint32_t>& values, std::size_t limit, std::size_t most);
-    /// An array of any size. It grows with the bytes that are read, since a count alone says nothing about
-    /// how many bytes an item takes. @param each  archives an item
+    /// An array of any size. It grows as bytes are read, because the count alone does not tell how many bytes
+    /// an item takes. @param each  archives an item
     template <typename Item, typename Each>
     void items(std::vector<Item>& values, const Each& each) {
         const std::size_t item_count = count(values.size(), 1);
@@ -119,7 +119,8 @@ class StateArchive {
     }
 
   private:
-    /// @param least_bytes  that each takes, so that no count asks for more memory than there are bytes
+    /// @param least_bytes  the least size of an item, so that no count makes the reader allocate more memory
+    /// than there are bytes
     std::size_t count(std::size_t present, std::size_t least_bytes);
 
     void read(void* to, std::size_t byte_count);

@@ -8,7 +8,7 @@
 
 namespace echinus {
 
-/// 0 where there are no edges. @param positions  [particle_count] a container of points
+/// 0 if there are no edges. @param positions  [particle_count] a container of points
 template <typename Positions>
 float mean_edge_length(const Elements& elements, const Positions& positions) {
     double sum = 0;
@@ -16,7 +16,7 @@ float mean_edge_length(const Elements& elements, const Positions& positions) {
     return elements.edges.empty() ? 0 : static_cast<float>(sum / static_cast<double>(elements.edges.size()));
 }
 
-/// The largest ratio of the length of an edge to that before, and at least 1.
+/// The largest ratio of an edge's length to its length before, but at least 1.
 template <typename Positions>
 float largest_stretch(const Elements& elements, const Positions& before, const Positions& after) {
     float largest = 1;

@@ -31,7 +31,8 @@ std::size_t longest_axis(std::span<const std::uint32_t> elements, const std::vec
     return static_cast<std::size_t>(std::max_element(extent.begin(), extent.end()) - extent.begin());
 }
 
-/// Halves along the longest axis, so that the first half fills whole groups of the largest possible size.
+/// Splits elements along the longest axis into two halves, such that the first consists of complete groups of
+/// the largest possible size.
 void sort_into_groups(std::span<std::uint32_t> elements, const std::vector<Vec3f>& middles) {
     if (elements.size() <= ElementTree::kWidth) {
         // nth_element() leaves them in an order that differs between standard libraries.
@@ -114,7 +115,8 @@ void ElementTree::refit(std::span<const Element> elements, const PointArrays& po
     refit_groups(groups, workers, [&](std::uint32_t e) { return echinus::box_of(elements[e], positions); });
 }
 
-/// The boxes of elements and of their groups, piece by piece, and those of larger groups, which are few.
+/// Updates the boxes of elements and of their groups in pieces, and then those of larger groups, which are
+/// few.
 template <typename BoxOf>
 void ElementTree::refit_groups(std::span<const std::uint8_t> groups, const Workers& workers,
                                const BoxOf& box_of) {

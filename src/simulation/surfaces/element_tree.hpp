@@ -13,7 +13,7 @@
 
 namespace echinus {
 
-/// A box along the axes.
+/// An axis-aligned box.
 struct Box {
     std::array<float, 3> low, high;
 
@@ -34,16 +34,17 @@ class ElementTree {
     static constexpr std::size_t kWidth = 8;
 
     ElementTree() = default;
-    /// Groups elements that are near each other in these positions.
+    /// Groups elements that are near each other at these positions.
     ElementTree(std::span<const Element> elements, const PointArrays& positions);
 
-    /// To elements that have moved. @param groups  [group_count()] one bit for each that may have
+    /// Fits the boxes to elements that have moved. @param groups  [group_count()] one bit for each element
+    /// that may have moved
     void refit(std::span<const Element> elements, const PointArrays& positions,
                std::span<const std::uint8_t> groups, const Workers& workers);
     std::size_t group_count() const { return levels_.empty() ? 0 : levels_[0].group_count(); }
 
     struct Level {
-        /// [a multiple of kWidth] Of what is not there, low is infinite and high minus infinite.
+        /// [a multiple of kWidth] In unused entries, low is infinite and high minus infinite.
         std::array<std::vector<float>, 3> low, high;
 
         std::size_t group_count() const { return low[0].size() / kWidth; }
@@ -52,8 +53,8 @@ class ElementTree {
         Box box_of_group(std::size_t first) const;
     };
 
-    /// Which of the eight boxes from `first` on are those of something, one bit each. Boxes that were read
-    /// from a saved state, and infinite ones, may touch the others, too.
+    /// Which of the eight boxes from `first` on are in use, one bit each. Infinite boxes, or those from a
+    /// saved state, may otherwise touch unused ones.
     unsigned present(std::size_t level, std::size_t first) const {
         const std::size_t count = level == 0 ? order_.size() : levels_[level - 1].group_count();
         return first + kWidth <= count ? (1U << kWidth) - 1 : (1U << (count - std::min(first, count))) - 1;
@@ -65,7 +66,7 @@ class ElementTree {
     template <typename BoxOf>
     void refit_groups(std::span<const std::uint8_t> groups, const Workers& workers, const BoxOf& box_of);
     std::vector<std::uint32_t> order_; ///< the elements, group by group
-    std::vector<Level> levels_;        ///< of elements, of groups of them and so on, to a single group
+    std::vector<Level> levels_;        ///< of elements, of their groups and so on, up to a single group
 };
 
 } // namespace echinus

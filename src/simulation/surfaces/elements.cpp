@@ -10,7 +10,7 @@ Edge sorted(std::uint32_t a, std::uint32_t b) {
     return a < b ? Edge{a, b} : Edge{b, a};
 }
 
-/// An edge of an element: the `side`-th of element `element`.
+/// An edge of an element: edge `side` of element `element`.
 struct EdgeUse {
     Edge edge;
     std::uint32_t element;
@@ -21,7 +21,7 @@ struct EdgeUse {
     }
 };
 
-/// Gives each edge a number, and to the first of its elements.
+/// Numbers the edges, and assigns each to the first of its elements.
 void number_edges(std::vector<EdgeUse>& uses, Elements& elements) {
     std::sort(uses.begin(), uses.end());
     for (std::size_t i = 0; i < uses.size(); ++i) {
@@ -34,7 +34,7 @@ void number_edges(std::vector<EdgeUse>& uses, Elements& elements) {
     }
 }
 
-/// Gives each vertex to the first of its elements.
+/// Assigns each vertex to the first of its elements.
 void own_vertices(std::size_t vertex_count, std::vector<Element>& all) {
     std::vector<bool> owned(vertex_count, false);
     for (Element& element : all)

@@ -11,15 +11,15 @@
 
 namespace echinus {
 
-/// A face, an edge without faces or a vertex without edges. Two surfaces that do not intersect can begin to
-/// only where a vertex meets a face or an edge meets an edge. So that each such pair is looked for once,
-/// every vertex and every edge belongs to one of its elements.
+/// A face, an edge without faces or a vertex without edges. Two surfaces that do not intersect can only begin
+/// to do so at a vertex and a face, or at two edges. Every vertex and every edge is owned by one of its
+/// elements, so that each such pair is searched once.
 struct Element {
-    std::array<std::uint32_t, 3> vertices{}; ///< the last one repeated where there are fewer than three
+    std::array<std::uint32_t, 3> vertices{}; ///< the last one is repeated if there are fewer than three
     std::array<std::uint32_t, 3> edges{};    ///< from vertex k to vertex (k + 1) % 3; one for an edge
     std::uint8_t vertex_count = 3;
-    std::uint8_t owned_vertices = 0; ///< one bit each
-    std::uint8_t owned_edges = 0;    ///< the same
+    std::uint8_t owned_vertices = 0; ///< one bit for each vertex
+    std::uint8_t owned_edges = 0;    ///< one bit for each edge
 
     bool is_face() const { return vertex_count == 3; }
     bool owns_vertex(std::size_t k) const { return ((owned_vertices >> k) & 1U) != 0; }
@@ -33,14 +33,14 @@ using Edge = std::array<std::uint32_t, 2>;
 
 /// The elements of a surface.
 struct Elements {
-    std::vector<Element> all; ///< the faces in their order, then edges, then vertices
+    std::vector<Element> all; ///< the faces in their order, then the edges, then the vertices
     std::vector<Edge> edges;
     std::vector<std::uint32_t> around_offsets; ///< [vertex_count + 1]
     std::vector<std::uint32_t> around;         ///< the elements at each vertex
 
     Elements() = default;
-    /// @param loose_edges  those that are edges of faces do not count twice
-    /// @param inner  [vertex_count] or none: vertices that need no element
+    /// @param loose_edges  edges that are also edges of faces are not counted twice
+    /// @param inner  [vertex_count] or empty: vertices that need no element
     Elements(std::size_t vertex_count, std::span<const Triangle> faces, std::span<const Edge> loose_edges,
              const std::vector<bool>& inner = {});
 
@@ -51,9 +51,9 @@ struct Elements {
     }
 };
 
-/// Its faces, and the structural constraints that are no edges of faces: threads. Particles inside a soft
-/// body have none, nor have those that pass.
-/// @param passes  [particle_count] 1 for particles that a collider lets through, or none
+/// The deformable's faces and threads, which are structural constraints that are not edges of faces.
+/// Particles inside a soft body and particles that pass have no elements.
+/// @param passes  [particle_count] 1 for particles that a collider lets through, or empty
 Elements elements_of(const Deformable& deformable, std::span<const std::uint8_t> passes = {});
 
 } // namespace echinus

@@ -1,4 +1,5 @@
-// Which elements of two trees are near each other: group by group, one element against eight at once.
+// Finds the elements of two trees that are near each other, group by group, comparing one element with eight
+// at once.
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "simulation/surfaces/near_elements.cpp"
@@ -20,7 +21,7 @@ namespace HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// Where a way begins and where it ends.
+/// The boxes at the beginning and at the end of a displacement.
 struct MovingBox {
     Box from, to;
 
@@ -30,7 +31,7 @@ struct MovingBox {
     }
 };
 
-/// Which of the eight boxes from `first` on this one may touch, one bit each.
+/// Which of the eight boxes from `first` on this box may touch, one bit each.
 HWY_INLINE unsigned touching(const MovingTree& tree, std::size_t level, std::size_t first,
                              const MovingBox& box) {
     constexpr hn::CappedTag<float, ElementTree::kWidth> d;
@@ -68,7 +69,7 @@ HWY_INLINE void enclose(Box& box, const Box& other) {
     }
 }
 
-/// The wanted elements of one group of `a` against all of `b`.
+/// Compares the wanted elements of one group of `a` with all elements of `b`.
 struct GroupSearch {
     const MovingTree& a;
     const MovingTree& b;
@@ -108,7 +109,7 @@ struct GroupSearch {
                    (first + static_cast<std::size_t>(std::countr_zero(mask))) * ElementTree::kWidth, around);
     }
 
-    /// With the elements of eight groups of `b`.
+    /// Compares with the elements of eight groups of `b`.
     void compare_groups(std::size_t first) {
         for (unsigned rest = a.wanted[group]; rest != 0; rest &= rest - 1) {
             const auto k = static_cast<std::size_t>(std::countr_zero(rest));
@@ -117,7 +118,7 @@ struct GroupSearch {
         }
     }
 
-    /// Of two wanted elements of one tree, the first finds the second.
+    /// If both elements are wanted ones of the same tree, only the first finds the second.
     unsigned left_to(std::size_t k, std::size_t other) const {
         if (!is_same || other > group) return ~0U;
         const unsigned others = ~static_cast<unsigned>(b.wanted[other]);

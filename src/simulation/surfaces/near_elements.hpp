@@ -10,11 +10,11 @@
 
 namespace echinus {
 
-/// Boxes around elements whose vertices move along straight ways, all together: where the ways begin, and
-/// where they end.
+/// Boxes around elements whose vertices move simultaneously along straight paths: at the beginning and at the
+/// end of the paths.
 struct MovingTree {
-    ElementTree from, to;             ///< in the same groups
-    std::vector<std::uint8_t> wanted; ///< [groups] one bit for each element that is looked at
+    ElementTree from, to;             ///< with the same groups
+    std::vector<std::uint8_t> wanted; ///< [groups] one bit for each element that is examined
 
     MovingTree() = default;
     MovingTree(std::span<const Element> elements, const PointArrays& positions)
@@ -29,7 +29,7 @@ struct MovingTree {
                                    wanted[group] = wanted_of(group, is_wanted);
                            });
     }
-    /// To wanted elements, whose ways have changed.
+    /// Fits the boxes to the wanted elements, whose paths have changed.
     void refit(std::span<const Element> elements, const PointArrays& at_start, const PointArrays& at_end,
                const Workers& workers) {
         from.refit(elements, at_start, wanted, workers);
@@ -51,11 +51,11 @@ struct MovingTree {
     }
 };
 
-/// Appends the pairs of a wanted element of `a` and any of `b` that may come as near as `reach` on their
-/// ways. Those do not whose boxes are farther apart along an axis both at the start and, on the same side, at
-/// the end: the distance along an axis is linear in time. So motion that two elements have in common does not
-/// bring them together. Where `a` and `b` are the same tree, each pair comes once, in either order, and none
-/// with itself.
+/// Appends the pairs of a wanted element of `a` and any element of `b` that may come as near as `reach` on
+/// their paths. Pairs are excluded if their boxes are farther apart along an axis both at the start and, on
+/// the same side, at the end: the distance along an axis is linear in time. So a motion that two elements
+/// have in common does not bring them together. If `a` and `b` are the same tree, each pair occurs once, in
+/// either order, and no element is paired with itself.
 /// @param piece  of the groups of `a`, below a.piece_count()
 void find_near(const MovingTree& a, const MovingTree& b, float reach, std::size_t piece,
                std::vector<std::array<std::uint32_t, 2>>& near);

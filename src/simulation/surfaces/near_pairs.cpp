@@ -1,5 +1,6 @@
-// Which vertices, edges and faces of two elements may come near each other: the plain function, which is the
-// specification, and a kernel that takes as many pairs of elements at once as the instruction set has lanes.
+// Finds which vertices, edges and faces of two elements may come near each other: the plain function, which
+// is the specification, and a kernel that processes as many pairs of elements at once as the instruction set
+// has lanes.
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "simulation/surfaces/near_pairs.cpp"
@@ -20,25 +21,25 @@
 namespace echinus {
 namespace {
 
-/// Of two elements there are 15 pairs, one bit each: a vertex of the first with the second as a face, one of
-/// the second with the first, and an edge of each.
+/// Two elements have 15 pairs, with one bit each: a vertex of the first with the second as a face, a vertex
+/// of the second with the first, or an edge of each.
 constexpr std::size_t kPairsOfElements = 15, kFirstFaceVertex = 3, kFirstEdgeEdge = 6;
 
-/// Pairs of elements by corner: the three of the first, then those of the second.
+/// Pairs of elements by their vertices: three of the first element, then three of the second.
 struct ElementBatch {
     static constexpr std::size_t kMost = 64;
     std::array<std::array<std::uint32_t, kMost>, 6> vertices;
-    std::array<std::uint32_t, kMost> bits; ///< out: of the pairs that may come near
+    std::array<std::uint32_t, kMost> bits; ///< out: one for each of the pairs that may come near
     std::size_t count = 0;
 };
 
-/// Of something along one axis, where its displacement begins and where it ends.
+/// The interval of something along one axis, at the beginning and at the end of its displacement.
 template <typename Number>
 struct MovingInterval {
     Number low_from, high_from, low_to, high_to;
 };
 
-/// Where the vertices of an element and of another one are along an axis.
+/// The intervals of an element's vertices, edges and face along one axis.
 template <typename Number>
 struct ElementIntervals {
     std::array<MovingInterval<Number>, 3> vertices, edges;
@@ -166,7 +167,7 @@ std::uint32_t near_bits(const Element& a, const Element& b, const MovingElements
     return ~far;
 }
 
-/// The pairs that are looked for with these elements.
+/// The pairs that are searched with these elements.
 std::uint32_t owned_bits(const Element& own, const Element& other) {
     std::uint32_t bits = 0;
     if (other.is_face()) bits |= std::uint32_t{own.owned_vertices};
@@ -208,7 +209,7 @@ void find_near_pairs(std::span<const std::array<std::uint32_t, 2>> elements, con
     ElementBatch batch;
     for (std::size_t first = 0; first < elements.size(); first += ElementBatch::kMost) {
         batch.count = std::min(ElementBatch::kMost, elements.size() - first);
-        // Whole vectors are read: behind the last one stands the first again.
+        // Whole vectors are read, so the first pair is repeated after the last one.
         for (std::size_t i = 0; i < ElementBatch::kMost; ++i) {
             const auto& [a, b] = elements[first + (i < batch.count ? i : 0)];
             const Element &of_own = own.elements.all[a], &of_other = other.elements.all[b];

@@ -14,7 +14,7 @@ namespace echinus {
 /// The two elements that may meet: the first belongs to the deformable, the second to its opponent.
 enum class PairKind : std::uint8_t { VertexFace, FaceVertex, EdgeEdge };
 
-/// Vertices of the deformable's part of a pair. Of the opponent's there are 4 less.
+/// The number of vertices in the deformable's part of a pair. The opponent's part has the rest of the four.
 constexpr std::size_t own_count(PairKind kind) {
     return kind == PairKind::VertexFace ? 1 : kind == PairKind::FaceVertex ? 3 : 2;
 }
@@ -22,14 +22,15 @@ constexpr std::size_t own_count(PairKind kind) {
 /// Two convex sets with a plane between them.
 struct Separation {
     Vec3f normal; ///< of unit length to rounding, from the opponent to the deformable
-    /// Every vertex of the one lies at least so far from every vertex of the other along the normal: proven,
-    /// rounding included. Not above the distance. Not positive: no plane was found.
+    /// Every vertex of one set is at least this far from every vertex of the other along the normal; this is
+    /// proven, including rounding. It does not exceed the distance. If it is not positive, no plane was
+    /// found.
     float gap = 0;
-    /// Shares of the four vertices in the two nearest points: the deformable's first.
+    /// The shares of the four vertices in the two nearest points, the deformable's first.
     std::array<float, 4> weights{};
 };
 
-/// A vertex and a face or two edges that share no vertex.
+/// A vertex and a face, or two edges, that share no vertex.
 struct Pair {
     std::array<std::uint32_t, 4> points; ///< the vertices of the deformable's part, then the opponent's
     PairKind kind;
@@ -38,10 +39,10 @@ struct Pair {
 /// @param points  the deformable's vertices of the pair, then the opponent's
 Separation separation(PairKind kind, const std::array<Vec3f, 4>& points) noexcept;
 
-/// The shares of the four points in the two that are nearest to each other, in double.
+/// The shares of the four points in the two nearest points, in double.
 std::array<double, 4> nearest_points(PairKind kind, const std::array<Vec3d, 4>& points) noexcept;
 
-/// separation() of many pairs: the same bits under every instruction set.
+/// separation() of many pairs, with the same bits for every instruction set.
 /// @param own     the positions of the deformable's vertices
 /// @param other   those of the opponent's
 /// @param result  [pairs.size()] out

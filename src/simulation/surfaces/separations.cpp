@@ -1,5 +1,6 @@
-// How far apart a vertex and a face or two edges are, and a plane between them: the plain functions, which
-// are the specification, and kernels that take as many pairs at once as the instruction set has lanes.
+// Computes the distance between a vertex and a face or between two edges, and a plane between them: the plain
+// functions, which are the specification, and kernels that process as many pairs at once as the instruction
+// set has lanes.
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "simulation/surfaces/separations.cpp"
@@ -19,19 +20,19 @@
 namespace echinus {
 namespace {
 
-/// Makes up for the length of a rounded normal, and for the far smaller rounding in double.
+/// Compensates for the length of a rounded normal, and for the far smaller rounding in double.
 constexpr double kRoundedDown = 1 - 1.0 / (1 << 20);
 
-/// More than the rounding of a gap, as a share of the sum of coordinates, which are taken from one of the
-/// pair's points.
+/// An upper bound for the rounding of a gap, as a share of the sum of the coordinates, which are relative to
+/// one of the pair's points.
 constexpr float kRounding = 1.0F / (1 << 20);
 
-/// A direction between points nearer than so many times the rounding is not to be trusted, nor is one along
-/// which the gap is less than this share of the distance.
+/// A direction between points is not trusted if their distance is less than this many times the rounding, or
+/// if the gap along it is less than this share of the distance.
 constexpr float kTrustedDistance = 64;
 constexpr float kTrustedShare = 0.9F;
 
-/// Pairs of one kind: their numbers, and their points by place.
+/// Pairs of one kind: their numbers, and their four points in separate arrays.
 struct PairBatch {
     static constexpr std::size_t kMost = 64;
     std::array<std::array<std::uint32_t, kMost>, 4> points;
@@ -42,7 +43,7 @@ struct PairBatch {
         for (std::size_t k = 0; k < 4; ++k) points[k][count] = pair.points[k];
         numbers[count++] = number;
     }
-    /// So that whole vectors can be read.
+    /// Fills up the arrays, so that whole vectors can be read.
     void pad() {
         for (std::array<std::uint32_t, kMost>& of_place : points)
             std::fill(of_place.begin() + static_cast<std::ptrdiff_t>(count), of_place.end(), of_place[0]);
@@ -71,7 +72,7 @@ HWY_INLINE FloatLanes at_most(FloatLanes a, FloatLanes b) {
 HWY_INLINE FloatLanes clamped(FloatLanes value) {
     return at_most(at_least(value, splat(0)), splat(1));
 }
-/// a / b, or 0 where b is not positive.
+/// a / b, or 0 if b is not positive.
 HWY_INLINE FloatLanes ratio(FloatLanes a, FloatLanes b) {
     const FloatMask positive = b > splat(0);
     return hn::IfThenElse(positive, a / hn::IfThenElse(positive, b, splat(1)), splat(0));
@@ -128,7 +129,7 @@ HWY_INLINE FourShares nearest_points(const FourPoints& p) {
     }
 }
 
-/// separation(), except where that takes the careful way: there the gap is negative.
+/// separation(), except in cases that need careful_separation(): there the gap is negative.
 template <PairKind kKind>
 HWY_INLINE void separate_lanes(const PairBatch& batch, std::size_t first, const PointArrays& own,
                                const PointArrays& other, std::span<Separation> result) {
@@ -195,7 +196,7 @@ T clamped(T value) {
     return value < 0 ? T{0} : value > 1 ? T{1} : value;
 }
 
-/// a / b, or 0 where b is not positive.
+/// a / b, or 0 if b is not positive.
 template <typename T>
 T ratio(T a, T b) {
     return b > 0 ? a / b : T{0};
@@ -214,8 +215,8 @@ std::array<T, 4> nearest_of_segments(const std::array<Vec3<T>, 4>& p) {
     return {1 - s, s, 1 - t, t};
 }
 
-/// The shares of a triangle's corners in its point nearest to p: above the triangle the foot, else the
-/// nearest of the points nearest on its three edges.
+/// The shares of a triangle's corners in its point nearest to p: if p is above the triangle, the foot of the
+/// perpendicular, otherwise the nearest of the nearest points on its three edges.
 template <typename T>
 std::array<T, 3> nearest_of_triangle(const Vec3<T>& p, const Vec3<T>& a, const Vec3<T>& b, const Vec3<T>& c) {
     const Vec3<T> ab = b - a, ac = c - a, bc = c - b, ap = p - a, bp = p - b;
@@ -268,14 +269,15 @@ Vec3<T> between(const std::array<Vec3<T>, 4>& p, const std::array<T, 4>& shares,
     return result;
 }
 
-/// A call of its own, because GCC 12 leaves out the rounding where it vectorises a conversion to float and
-/// back: the gap was then that of another normal.
+/// Not inlined, because GCC 12 omits the rounding if it vectorises a conversion to float and back: the gap
+/// would then be that of a different normal.
 [[gnu::noinline]] Vec3f rounded(const Vec3d& v) {
     return Vec3f(v);
 }
 
-/// Where the direction between computed nearest points is poor, because edges are nearly parallel, a face is
-/// nearly a segment or the gap is tiny: in double, along every direction that can be the right one.
+/// For cases in which the direction between computed nearest points is poor, because edges are nearly
+/// parallel, a face is nearly a segment or the gap is tiny: tries every direction that can be the right one,
+/// in double.
 Separation careful_separation(PairKind kind, const std::array<Vec3f, 4>& points) {
     const std::size_t own = own_count(kind);
     std::array<Vec3d, 4> p;
@@ -299,7 +301,7 @@ Separation careful_separation(PairKind kind, const std::array<Vec3f, 4>& points)
         for (std::size_t j = own; j < 4; ++j) try_direction(p[i] - p[j]);
     if (kind == PairKind::EdgeEdge) {
         try_direction(cross(p[1] - p[0], p[3] - p[2]));
-        for (std::size_t k = 0; k < 4; ++k) { // from an end to the other edge
+        for (std::size_t k = 0; k < 4; ++k) { // from an end of one edge to the other edge
             const std::size_t a = k < 2 ? 2 : 0;
             const Vec3d along = p[a + 1] - p[a];
             try_direction(p[k] - (p[a] + along * clamped(ratio(dot(p[k] - p[a], along), dot(along, along)))));
