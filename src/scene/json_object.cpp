@@ -15,8 +15,8 @@ using nlohmann::json;
 
 namespace {
 
-/// Refuses two values with one key, of which the parser would keep the last, and values that nest deeper than
-/// the library's recursive functions can go.
+/// Refuses two values with one key, of which the parser would keep the last, and values nested too deeply for
+/// the library's recursive functions.
 class ParsingRules {
   public:
     explicit ParsingRules(const std::string& name) : name_(name) {}
@@ -36,10 +36,10 @@ class ParsingRules {
 
   private:
     const std::string& name_;
-    std::vector<std::set<std::string>> keys_; // of the objects that are open
+    std::vector<std::set<std::string>> keys_; // the keys of the open objects
 };
 
-/// The library's message without its own tag in brackets.
+/// The library's message without its tag in brackets.
 std::string reason_of(const json::exception& error) {
     const std::string message = error.what();
     const std::size_t end_of_tag = message.find("] ");
@@ -67,8 +67,8 @@ bool within(double value, Range range) {
     return value >= range.least && value <= range.most;
 }
 
-/// Does `value` hold an element of the type and in the range? Numbers of type double may be written as
-/// integers, but not the other way round.
+/// Does `value` contain an element of this type and in this range? Numbers of type double may be written as
+/// integers, but not the reverse.
 bool holds(const json& value, double, Range range) {
     return value.is_number() && within(value.get<double>(), range);
 }
@@ -101,7 +101,7 @@ std::optional<std::size_t> number_of(const json& value, const std::vector<std::s
     return static_cast<std::size_t>(found - words.begin());
 }
 
-/// A value as it stands in the scene, shortened where it is long.
+/// A value as it is in the scene, shortened if it is long.
 std::string excerpt(const json& value) {
     constexpr std::size_t kLongest = 60;
     const std::string text = value.dump(-1, ' ', true, json::error_handler_t::replace);

@@ -15,25 +15,26 @@
 namespace echinus {
 
 /// Parses JSON with comments.
-/// @throws Error InvalidScene when the text is no JSON or gives a key twice; the sentence begins with `name`
+/// @throws Error InvalidScene if the text is not JSON or contains a key twice; the sentence begins with
+/// `name`
 nlohmann::json parse_json(std::string_view text, const std::string& name);
 
-/// Limits of a number, both included.
+/// The limits of a number, both included.
 struct Range {
     double least, most;
 };
 
-/// Reads one object of a scene key by key and remembers which keys it was asked for; finish() refuses all
+/// Reads one object of a scene key by key and remembers which keys were requested; finish() refuses all
 /// others. A key that is absent leaves the value as it is, unless it is required. Every error is an Error
 /// InvalidScene that names the file and the key's path.
 class JsonObject {
   public:
     /// @param key_path  of the object itself, "" for the whole scene
-    /// @throws Error InvalidScene when `value` is no object
+    /// @throws Error InvalidScene if `value` is not an object
     JsonObject(const nlohmann::json& value, const std::string& scene_name, const std::string& key_path);
 
     bool has(const char* key) const { return value_.contains(key); }
-    /// @param other  a key that may stand for it, for the sentence
+    /// @param other  an alternative key, for the sentence
     void require(const char* key, const char* other = nullptr);
 
     void read(const char* key, bool& value);
@@ -48,13 +49,13 @@ class JsonObject {
     void read(const char* key, std::vector<std::array<std::uint32_t, 2>>& value, Range range);
     void read(const char* key, std::vector<std::uint32_t>& value, Range range);
     std::optional<std::string> read_string(const char* key);
-    /// A string that has to be one of `words`; returns its number.
+    /// A string that has to be one of `words`; returns its index.
     std::optional<std::size_t> read_word(const char* key, const std::vector<std::string_view>& words);
-    /// A list of such strings.
+    /// A list of strings, each of which has to be one of `words`.
     std::vector<std::size_t> read_words(const char* key, const std::vector<std::string_view>& words);
-    /// The object under a key, if it is there.
+    /// The object under a key, if it is present.
     std::optional<JsonObject> object(const char* key);
-    /// The objects of an array under a key; none where it is not there. They are named KEY[0], KEY[1], ...
+    /// The objects of an array under a key; none if it is absent. They are named KEY[0], KEY[1], ...
     std::vector<JsonObject> objects(const char* key);
     bool is_string(const char* key) const { return has(key) && value_[key].is_string(); }
     bool is_object(const char* key) const { return has(key) && value_[key].is_object(); }
@@ -64,21 +65,22 @@ class JsonObject {
         return is_array(key) && !value_[key].empty() && value_[key].front().is_object();
     }
 
-    /// To be called when everything has been asked for.
+    /// To be called after all keys have been requested.
     void finish() const;
 
-    /// Refuses keys that are there and need another choice, which the sentence names: they are no
-    /// misspellings.
-    /// @param choice  the key that chooses, and the word that these keys need
+    /// Refuses keys that are present but require a different choice, which the sentence names: they are not
+    /// misspelt.
+    /// @param choice  the key that makes the choice @param word  the value that these keys require
     void refuse_keys(std::initializer_list<const char*> keys, const std::string& choice,
                      const std::string& word) const;
 
     /// Accepts a key, whatever its value, that has no effect.
     /// @param instead  what to do, which completes "...has no effect "
-    /// @return the sentence about it, if it is there
+    /// @return the sentence about it, if the key is present
     std::optional<std::string> ignore(const char* key, const std::string& instead);
 
-    /// The sentence about a key of an earlier version, if it is there. @param instead  to write
+    /// The sentence about a key of an earlier version, if it is present. @param instead  what to write
+    /// instead
     std::optional<std::string> warn_of_former(const char* key, const std::string& instead) const;
 
     /// Refuses the value of a key: `expected` completes "...; it must be ".

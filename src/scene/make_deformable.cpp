@@ -14,8 +14,8 @@ namespace echinus {
 
 namespace {
 
-/// The vertices' numbers. @param key  of the choice, for sentences
-/// @throws Error InvalidOptions when there is none in a box
+/// The indices of the vertices. @param key  of the choice, for sentences
+/// @throws Error InvalidOptions if a box contains none
 std::vector<std::uint32_t> chosen(const VertexChoice& choice, const std::vector<Vec3f>& vertices,
                                   const std::string& key) {
     if (const auto* numbers = std::get_if<std::vector<std::uint32_t>>(&choice)) return *numbers;
@@ -30,7 +30,7 @@ std::vector<std::uint32_t> chosen(const VertexChoice& choice, const std::vector<
     return found;
 }
 
-/// How sentences call a mesh, and how it is made: a file's as it was read.
+/// The name of a mesh in sentences, and the mesh; that of a file as it was read.
 struct NamedMesh {
     std::string name;
     TriangleMesh mesh;
@@ -72,7 +72,7 @@ std::vector<Attachment> attached(const std::vector<SceneAttachment>& attachments
     return all;
 }
 
-/// @param held  to which they belong
+/// @param held  the deformable to which they belong
 void add_handles(const std::vector<SceneHandle>& handles, const std::vector<Vec3f>& vertices,
                  const std::string& key, Deformable& held) {
     for (std::size_t i = 0; i < handles.size(); ++i) {
@@ -84,7 +84,7 @@ void add_handles(const std::vector<SceneHandle>& handles, const std::vector<Vec3
     }
 }
 
-/// A sheet's particles have the places of no mesh, and are named by numbers.
+/// A sheet's particles are not the vertices of a mesh; they are chosen by their numbers.
 Deformable make_sheet(const Scene& scene) {
     Deformable sheet = make_cloth(scene.cloth);
     add_handles(scene.cloth_handles, {}, "cloth.handles", sheet);
@@ -129,7 +129,7 @@ TetrahedralMesh fill(const TriangleMesh& surface, double element) {
     return tetrahedralize(map, {.size = element}).mesh;
 }
 
-/// Cuboids of about this size.
+/// Fills the box with cuboids of about this size.
 TetrahedralMesh solid_box(const BoxModel& box, double element) {
     const auto segments = [&](double side) {
         return static_cast<std::uint32_t>(std::clamp(std::round(side / element), 1.0, 1e6));
@@ -148,7 +148,7 @@ struct Filling {
     TetrahedralMesh operator()(const auto& shape) const { return fill(make_mesh(shape), element); }
 };
 
-/// Of the particles that are not pinned.
+/// The centre of mass of the particles that are not pinned.
 Vec3d centre_of_mass(const Deformable& deformable) {
     Vec3d sum;
     double mass = 0;

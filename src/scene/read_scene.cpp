@@ -17,26 +17,26 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// Beyond 1e9 units a float no longer resolves what is near the origin.
+/// Beyond 1e9 units a float no longer resolves details near the origin.
 constexpr Range kCoordinate{-1e9, 1e9};
 constexpr Range kLength{1e-9, 1e9};
 constexpr Range kSegmentCount{1, 4096};
 constexpr Range kDegrees{-1e6, 1e6};
 constexpr Range kTime{-1e9, 1e9};
 constexpr Range kMass{1e-9, 1e15};
-/// Of the square of a quaternion's length.
+/// Tolerance for the squared length of a quaternion.
 constexpr double kUnitTolerance = 1e-4;
-/// Unless a scene says otherwise: its constraints need a smaller one than the options have.
+/// The default of a scene: the constraints need a smaller time step than the default of the options.
 constexpr double kJakobsenTimeStep = 1.0 / 240;
 constexpr double kRadiansPerDegree = std::numbers::pi / 180;
 
 /// The words of CollisionMode, in its order.
 constexpr std::array kModes{"particles", "surfaces", "surfaces_and_self"};
 
-/// With "small_holes" and without "hole_edges".
+/// The number of edges for "small_holes" without "hole_edges".
 constexpr std::uint32_t kUsualHoleEdges = 32;
 
-/// A key of the solvers of earlier versions, or of the paper's, and what to write in its place.
+/// A key of the paper's solver or of a solver in an earlier version, and what to write instead.
 struct KeyWithoutEffect {
     const char* key;
     const char* instead;
@@ -50,7 +50,7 @@ constexpr KeyWithoutEffect kOfTheMaterial[] = {
     {"bending", "under the newton solver; write material.bending_stiffness, in N m"},
     {"drag", "under the newton solver; write material.air_drag, in 1/s"},
 };
-/// Under either solver.
+/// Keys without effect for either solver.
 constexpr KeyWithoutEffect kOfTheSceneBefore[] = {
     {"substeps", "any more; leave it out"},
     {"multilevel", "any more, since the newton solver converges at every resolution; leave it out"},
@@ -63,7 +63,7 @@ constexpr KeyWithoutEffect kOfTheClothBefore[] = {
     {"bending", "any more; newton computes bending from angles, and jakobsen from distance constraints"},
 };
 
-/// Warns of those that are there.
+/// Warns of those keys that are present.
 void ignore(JsonObject& object, std::span<const KeyWithoutEffect> keys, Scene& scene) {
     for (const auto& [key, instead] : keys)
         if (auto warning = object.ignore(key, instead)) scene.warnings.push_back(*std::move(warning));
@@ -103,7 +103,7 @@ SceneModel read_box(JsonObject box) {
 }
 
 /// A file's name, or an object with the one key that names a generated shape.
-/// @pre the key is there
+/// @pre the key is present
 SceneModel read_model(JsonObject& parent, const char* key) {
     if (parent.is_string(key)) {
         const std::string name = *parent.read_string(key);
@@ -224,7 +224,7 @@ void read_scale(JsonObject& collider, Vec3d& scale) {
             collider.refuse("scale", "an array of 3 numbers, each from 1e-9 to 1e9 or from -1e9 to -1e-9");
 }
 
-/// Each with a time and a pose.
+/// Keyframes, each with a time and a pose.
 std::vector<PoseKey> read_keyframes(JsonObject& collider) {
     std::vector<PoseKey> keys;
     for (JsonObject& object : collider.objects("keyframes")) {
@@ -239,7 +239,7 @@ std::vector<PoseKey> read_keyframes(JsonObject& collider) {
     return keys;
 }
 
-/// A name, or an object with one.
+/// A cache is given by a name or by an object with a name.
 std::optional<CacheFile> read_cache(JsonObject& collider) {
     if (!collider.has("cache")) return std::nullopt;
     if (collider.is_string("cache")) {
@@ -257,7 +257,7 @@ std::optional<CacheFile> read_cache(JsonObject& collider) {
     return cache;
 }
 
-/// Where it stands and how it moves.
+/// Reads the pose of a collider and its motion.
 void read_motion(JsonObject& object, SceneCollider& collider) {
     read_scale(object, collider.scale);
     collider.cache = read_cache(object);
@@ -277,12 +277,12 @@ void read_motion(JsonObject& object, SceneCollider& collider) {
     collider.angular_velocity = degrees_per_second * kRadiansPerDegree;
 }
 
-/// @pre the colliders were read
+/// @pre the colliders have been read
 Range numbers_of_colliders(const Scene& scene) {
     return {0, static_cast<double>(scene.colliders.size() - 1)};
 }
 
-/// One model, with the keys of its collider apart; or an array of colliders with a model each.
+/// One model, with the keys of its collider in a separate object; or an array of colliders with a model each.
 void read_colliders(JsonObject& root, Scene& scene) {
     if (root.has("colliders")) {
         for (const char* key : {"model", "repair", "collider"})
@@ -307,7 +307,7 @@ void read_colliders(JsonObject& root, Scene& scene) {
     object->finish();
 }
 
-/// Also of bodies. Angles in scenes are degrees.
+/// Used for colliders and bodies. Angles in scenes are degrees.
 SceneVelocity read_velocity(JsonObject& object) {
     SceneVelocity velocity;
     Vec3d degrees_per_second;
@@ -319,8 +319,8 @@ SceneVelocity read_velocity(JsonObject& object) {
 
 /// Particles that move with the first collider; or an array of objects, each with some particles and a
 /// collider.
-/// @param read_choice  (object, key) gives what is under a key
-/// @pre the colliders were read
+/// @param read_choice  (object, key) returns the choice under a key
+/// @pre the colliders have been read
 template <typename ReadChoice>
 std::vector<SceneAttachment> read_attachments(JsonObject& object, const Scene& scene, const char* what,
                                               const ReadChoice& read_choice) {
@@ -338,9 +338,9 @@ std::vector<SceneAttachment> read_attachments(JsonObject& object, const Scene& s
     return attachments;
 }
 
-/// Each with some particles, a path and a time.
+/// Handles, each with some particles, a path and a time.
 /// @param what, read_choice  as in read_attachments()
-/// @pre the solver was read
+/// @pre the solver has been read
 template <typename ReadChoice>
 std::vector<SceneHandle> read_handles(JsonObject& object, const Scene& scene, const char* what,
                                       const ReadChoice& read_choice) {
@@ -423,14 +423,14 @@ void read_mesh_cloth(JsonObject& cloth, Scene& scene) {
     scene.cloth_handles = read_handles(cloth, scene, "vertices", read_vertices);
 }
 
-/// @pre the colliders were read
+/// @pre the colliders have been read
 std::vector<std::uint32_t> read_ignores(JsonObject& object, const Scene& scene) {
     std::vector<std::uint32_t> numbers;
     object.read("ignores", numbers, numbers_of_colliders(scene));
     return numbers;
 }
 
-/// Is it a file of tetrahedra? By its ending, as for read_tetrahedra().
+/// Is it a file of tetrahedra? Decided by its extension, as in read_tetrahedra().
 bool has_tetrahedra(const SceneModel& model) {
     const auto* file = std::get_if<ModelFile>(&model);
     if (file == nullptr) return false;
@@ -466,7 +466,7 @@ void read_bodies(JsonObject& root, Scene& scene) {
     scene.has_cloth = scene.bodies.empty() || root.has("cloth");
 }
 
-/// @pre the map, the bodies and the solver were read
+/// @pre the map, the bodies and the solver have been read
 void read_cloth(JsonObject& root, Scene& scene) {
     if (!scene.has_cloth) return;
     root.require("cloth");
@@ -484,7 +484,7 @@ void read_cloth(JsonObject& root, Scene& scene) {
     cloth->finish();
 }
 
-/// @pre the solver and the cloth were read
+/// @pre the solver and the cloth have been read
 void read_material(JsonObject& root, Scene& scene) {
     SimulationOptions& options = scene.simulation;
     auto material = root.object("material");
@@ -502,7 +502,7 @@ void read_material(JsonObject& root, Scene& scene) {
     material->finish();
 }
 
-/// The two keys in place of which `collision` is now. @param newton  null: the solver is another
+/// The two keys that `collision` has replaced. @param newton  null if a different solver is chosen
 void read_former_collision(JsonObject& root, NewtonOptions* newton, Scene& scene) {
     if (!root.has("surface_collision") && !root.has("self_collision")) return;
     bool surfaces = newton != nullptr && newton->collision != CollisionMode::Particles;
@@ -524,7 +524,7 @@ void read_former_collision(JsonObject& root, NewtonOptions* newton, Scene& scene
         if (auto warning = root.warn_of_former(key, instead)) scene.warnings.push_back(*std::move(warning));
 }
 
-/// @pre the map and the solver were read
+/// @pre the map and the solver have been read
 void read_surfaces(JsonObject& root, Scene& scene) {
     const bool is_exact = std::holds_alternative<ExactMapOptions>(scene.map);
     SimulationOptions& options = scene.simulation;
@@ -552,7 +552,7 @@ void read_surfaces(JsonObject& root, Scene& scene) {
         root.refuse("untangle", "false, or \"collision\" must be \"surfaces\" or \"surfaces_and_self\"");
 }
 
-/// @pre the bodies were read
+/// @pre the bodies have been read
 void read_solver(JsonObject& root, Scene& scene) {
     SimulationOptions& options = scene.simulation;
     constexpr std::size_t kJakobsen = 1, kVerlet = 2;
@@ -576,7 +576,7 @@ void read_solver(JsonObject& root, Scene& scene) {
     if (options.wind != Vec3d{}) root.require("wind_rate");
 }
 
-/// @pre the colliders and the solver were read
+/// @pre the colliders and the solver have been read
 void read_teleports(JsonObject& root, Scene& scene) {
     if (scene.simulation.kind() != SolverKind::Newton) root.refuse_keys({"teleports"}, "solver", "newton");
     for (JsonObject& object : root.objects("teleports")) {
@@ -603,7 +603,7 @@ void read_end(JsonObject& root, Scene& scene) {
 }
 
 std::string read_text(const fs::path& path) {
-    // A scene has some hundred bytes; a device or a mesh that was named by mistake is refused soon.
+    // A scene has a few hundred bytes; a device or a mesh named by mistake is thus refused early.
     constexpr std::size_t kLargest = std::size_t{1} << 20;
     std::error_code ignored;
     if (fs::is_directory(path, ignored))

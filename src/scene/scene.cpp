@@ -13,7 +13,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// @param is_right  whether a path is what is looked for
+/// @param is_right  returns whether a path is the right one
 template <typename IsRight>
 fs::path find(const std::string& name, std::span<const fs::path> folders, const char* what,
               const IsRight& is_right) {
@@ -72,7 +72,7 @@ AnyMap build_map(const TriangleMesh& mesh, const MapOptions& options, unsigned t
 
 namespace {
 
-/// How sentences call a model.
+/// The name of a model in sentences.
 struct NameOfModel {
     std::string operator()(const ModelFile& file) const { return utf8_path(file.name).filename().string(); }
     std::string operator()(const TorusModel&) const { return "the torus"; }
