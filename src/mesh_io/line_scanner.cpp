@@ -16,15 +16,15 @@ namespace echinus {
 namespace {
 
 constexpr std::string_view kBlanks = " \t\v\f";
-/// With these, programs of DOS and of tapes fill up the last block of a text.
+/// Programs for DOS and for tapes fill up the last block of a text with these.
 constexpr std::string_view kPadding{"\0\x1a \t\v\f\r\n", 8};
 
 constexpr bool is_control(char c) {
     return static_cast<unsigned char>(c) < ' ' && kBlanks.find(c) == std::string_view::npos;
 }
 
-/// Is the # at this place a part of 1.#INF, 1.#IND, 1.#QNAN or 1.#SNAN, which Microsoft's libraries wrote for
-/// infinity and NaN, or of a shorter form, which came of rounding them (1.#J, 1.#R, 1.#QO)?
+/// Is the # at this position part of 1.#INF, 1.#IND, 1.#QNAN or 1.#SNAN, which Microsoft's libraries wrote
+/// for infinity and NaN, or of a shorter form, which resulted from rounding them (1.#J, 1.#R, 1.#QO)?
 bool is_in_number(std::string_view line, std::size_t hash) {
     return hash >= 2 && line.substr(hash - 2, 2) == "1." && hash + 1 < line.size() &&
            std::string_view("IQSJR").find(line[hash + 1]) != std::string_view::npos;
@@ -48,9 +48,9 @@ std::from_chars_result read_number(std::string_view word, Number& value) {
     return std::from_chars(word.data(), word.data() + word.size(), value);
 }
 
-#else // libc++ before 20, as Emscripten has it: strtof and strtod of musl round correctly and know no locale
+#else // libc++ before 20, as in Emscripten: strtof and strtod of musl round correctly and ignore the locale
 
-/// Would std::from_chars begin to read here? Beyond it, strtof reads blanks, a plus and hexadecimal numbers.
+/// Would std::from_chars begin to read here? strtof also accepts blanks, a plus and hexadecimal numbers.
 bool begins_like_a_number(std::string_view word) {
     if (!word.empty() && word[0] == '-') word.remove_prefix(1);
     const bool is_hexadecimal = word.size() > 1 && (word[1] == 'x' || word[1] == 'X');
@@ -64,14 +64,15 @@ std::from_chars_result read_number(std::string_view word, Number& value) {
         return std::from_chars(word.data(), word.data() + word.size(), value);
     } else {
         if (!begins_like_a_number(word)) return {word.data(), std::errc::invalid_argument};
-        const std::string text(word); // with a zero at its end
+        const std::string text(word); // terminated by a zero
         char* end = nullptr;
         errno = 0;
         if constexpr (std::is_same_v<Number, float>)
             value = std::strtof(text.c_str(), &end);
         else
             value = std::strtod(text.c_str(), &end);
-        const bool is_lost = value == 0 || std::isinf(value); // not just rounded to a small number
+        const bool is_lost =
+            value == 0 || std::isinf(value); // otherwise it was only rounded to a small number
         return {word.data() + (end - text.c_str()),
                 errno == ERANGE && is_lost ? std::errc::result_out_of_range : std::errc{}};
     }
@@ -85,8 +86,8 @@ std::errc parse_whole(std::string_view word, Number& value) {
     return error == std::errc{} && end != word.data() + word.size() ? std::errc::invalid_argument : error;
 }
 
-/// Of a number that no double holds: 0 where the exponent says so. A word of very many digits could be
-/// anything, and counts as too large.
+/// The value of a number beyond the range of double: 0 if the exponent says so. A word with very many digits
+/// could be either, and counts as too large.
 double out_of_range(std::string_view word) {
     constexpr std::size_t kMostDigits = 64;
     const bool is_small = word.size() <= kMostDigits && word.find_first_of("eE") != std::string_view::npos &&
@@ -94,8 +95,9 @@ double out_of_range(std::string_view word) {
     return is_small ? 0 : HUGE_VAL;
 }
 
-/// A number in text that lies next to the middle between two floats may become that middle as a double, and
-/// then the farther float. So a double that ends like a middle is compared with the float of the word.
+/// A number in text that is very close to the midpoint between two floats may be rounded to that midpoint as
+/// a double, and then to the farther float. So a double whose last bits are those of a midpoint is compared
+/// with the float that the word gives directly.
 double rounding_to_nearest_float(std::string_view word, double value) {
     constexpr std::uint64_t kZeroInMiddles = (std::uint64_t{1} << 28) - 1;
     if ((echinus::bit_cast<std::uint64_t>(value) & kZeroInMiddles) != 0) return value;
@@ -108,7 +110,7 @@ std::string expectation(const std::string& what, std::string_view word) {
     return what + " was expected, not " + (word.empty() ? "the end of the line" : in_quotes(word));
 }
 
-/// Why a word that a person takes for a number is none.
+/// Explains why a word that looks like a number to a person is not one.
 std::string remedy_for(std::string_view word) {
     const bool has_digits = word.find_first_of("0123456789") != std::string_view::npos;
     if (has_digits && word.find(',') != std::string_view::npos)
@@ -138,7 +140,7 @@ bool parse_integer(std::string_view word, std::int64_t& value) {
     return parse_whole(without_plus(word), value) == std::errc{};
 }
 
-/// The text of the next line of the file, without its comment. Goes behind it.
+/// The text of the next line of the file, without its comment. Advances past the line.
 std::string_view LineScanner::take_line() {
     const std::string_view text = source_.bytes;
     const std::string_view rest = text.substr(next_);
@@ -160,11 +162,11 @@ std::string_view LineScanner::take_line() {
     return without_comment(rest.substr(0, end));
 }
 
-/// The next line of the file, without the backslash at its end; false when it has none.
+/// Takes the next line of the file, without the backslash at its end; returns false if it has none.
 bool LineScanner::take_continued_line() {
     const std::size_t begin = next_;
     rest_ = take_line();
-    // A comment is cut off, so that the backslash is not the last of the line's characters in the file.
+    // A comment is cut off, so a backslash before it is not the line's last character in the file.
     const std::size_t end = begin + rest_.size();
     const bool is_continued = rest_.ends_with('\\') && source_.bytes.substr(end, 1) != "#";
     if (is_continued) rest_.remove_suffix(1);

@@ -25,17 +25,17 @@ struct MeshSource {
     }
 };
 
-/// The text of a file, behind the byte order mark of UTF-8 if there is one.
-/// @throws Error WrongFormat when the text is UTF-16 or UTF-32
+/// The text of a file, after a byte order mark of UTF-8 if there is one.
+/// @throws Error WrongFormat if the text is UTF-16 or UTF-32
 std::string_view text_of(const MeshSource& source);
 
-/// With ASCII capitals as small letters, whatever the locale.
+/// The text with ASCII capitals in lower case, independently of the locale.
 std::string lower_case(std::string_view text);
 
 /// The extension of a path's name, with the dot, in lower case: ".obj" for "A/Horse.OBJ".
 std::string lower_case_ending(const std::filesystem::path& path);
 
-/// The text with ? for bytes that do not print, so that it can stand in a sentence.
+/// The text with ? for bytes that are not printable, for use in a sentence.
 std::string printable(std::string_view text);
 
 /// A word of a file for use in a sentence: in quotation marks, printable, cut short.
@@ -49,7 +49,7 @@ class ByteReader {
     ByteReader(const MeshSource& source, std::size_t offset, ByteOrder order)
         : source_(source), offset_(std::min(offset, source.bytes.size())), order_(order) {}
 
-    /// @throws Error Damaged when the file ends before
+    /// @throws Error Damaged if the file ends before it
     template <typename Number>
     Number next() {
         std::array<char, sizeof(Number)> bytes{};
@@ -65,7 +65,7 @@ class ByteReader {
     std::size_t bytes_left() const { return source_.bytes.size() - offset_; }
 
   private:
-    /// Moves over the bytes and gives the offset of the first.
+    /// Advances past the bytes and returns the offset of the first.
     std::size_t require(std::size_t byte_count) {
         if (byte_count > bytes_left())
             source_.fail(ErrorCode::Damaged, "the file ends at byte " + std::to_string(source_.bytes.size()) +
@@ -79,16 +79,16 @@ class ByteReader {
     ByteOrder order_;
 };
 
-/// Counts the vertices, corners and keys that are made of a file, against small files that name the same
-/// bytes again and again.
+/// Counts the vertices, corners and keys that are made from a file, to protect against small files that refer
+/// to the same bytes again and again.
 class Budget {
   public:
     explicit Budget(const MeshSource& source) : source_(source), byte_count_(source.bytes.size()) {}
 
-    /// Bytes that belong to the file but lie elsewhere.
+    /// Adds bytes that belong to the file but are stored elsewhere.
     void add_bytes(std::size_t count) { byte_count_ += count; }
 
-    /// @throws Error InvalidMesh when all that is made is out of proportion to the file's size
+    /// @throws Error InvalidMesh if the total is out of proportion to the file's size
     void spend(std::size_t count) {
         constexpr std::size_t kFree = std::size_t{1} << 22, kForByte = 32;
         constexpr std::size_t kMost = std::size_t{1} << 31; // vertices are numbered by 32 bits

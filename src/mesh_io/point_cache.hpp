@@ -19,8 +19,9 @@ namespace echinus {
 /// then for every sample the positions of all points as float32 x y z, all little-endian.
 class PointCacheWriter {
   public:
-    /// @param frames_per_sample  how many frames lie between two samples; the first is frame 0
-    /// @throws Error Unwritable, as all members
+    /// @param frames_per_sample  the number of frames from one sample to the next; the first sample is frame
+    /// 0
+    /// @throws Error Unwritable, as all members do
     PointCacheWriter(const std::filesystem::path& path, std::size_t point_count,
                      std::uint32_t frames_per_sample);
 
@@ -32,12 +33,12 @@ class PointCacheWriter {
     std::int32_t sample_count_ = 0;
 };
 
-/// Reads a PC2 point cache, as PointCacheWriter writes it. Positions are read when they are asked for, since
-/// a cache may be larger than memory; from several threads at once, too.
+/// Reads a PC2 point cache in the form that PointCacheWriter writes. Positions are read on request, since a
+/// cache may be larger than memory; several threads may do so at once.
 class PointCacheReader {
   public:
-    /// @throws Error Unreadable, WrongFormat, UnsupportedVersion or Damaged (also when the file is
-    /// longer or shorter than its header says); the sentence begins with the path
+    /// @throws Error Unreadable, WrongFormat, UnsupportedVersion or Damaged (also if the size of the file
+    /// does not match its header); the sentence begins with the path
     explicit PointCacheReader(const std::filesystem::path& path);
 
     std::size_t point_count() const { return point_count_; }
@@ -47,7 +48,7 @@ class PointCacheReader {
         return start_frame_ + frames_per_sample_ * static_cast<double>(sample);
     }
     /// @pre sample < sample_count()
-    /// @throws Error Damaged when a position is not finite, or the file was shortened; Unreadable
+    /// @throws Error Damaged if a position is not finite, or the file was shortened; Unreadable
     std::vector<Vec3f> positions(std::size_t sample) const;
 
   private:

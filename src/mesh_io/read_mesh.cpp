@@ -14,7 +14,7 @@ namespace echinus {
 
 namespace {
 
-/// Control characters in the first line are refused. A binary PLY file, too, begins with lines of text.
+/// Refuses control characters in the first line. Even a binary PLY file begins with lines of text.
 void require_beginning_of_text(const MeshSource& beginning) {
     LineScanner(beginning).next_line();
 }
@@ -46,7 +46,7 @@ PolygonMesh read_polygons(const MeshSource& source) {
     return format_of(source).read(source);
 }
 
-/// The polygons of two corners.
+/// The polygons with two corners.
 std::vector<std::array<std::uint32_t, 2>> edges_of(const PolygonMesh& polygons) {
     std::vector<std::array<std::uint32_t, 2>> edges;
     std::size_t begin = 0;
@@ -84,7 +84,7 @@ MeshAndEdges read_mesh_and_edges(const MeshSource& source) {
     const PolygonMesh polygons = read_polygons(source);
     TriangleMesh joined = triangulate(polygons, source);
     const std::size_t face_count = joined.faces.size();
-    // weld() keeps the vertices of faces, so edges go through it as faces without area.
+    // weld() keeps only the vertices of faces, so edges are passed to it as faces without area.
     for (const auto& [a, b] : edges_of(polygons)) joined.faces.push_back({a, b, b});
     if (joined.faces.empty()) source.fail(ErrorCode::InvalidMesh, "the file has neither faces nor lines");
     MeshAndEdges result{.mesh = weld(joined), .edges = {}};

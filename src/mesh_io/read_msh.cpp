@@ -7,8 +7,8 @@
 #include <utility>
 
 // The format: "MSH file format" in the manual of Gmsh, versions 2.2 and 4.1
-// (https://gmsh.info/doc/texinfo/gmsh.html#MSH-file-format). Reads the nodes, and the elements that are
-// tetrahedra of four corners; leaves out points, lines and faces, which only name parts of the boundary.
+// (https://gmsh.info/doc/texinfo/gmsh.html#MSH-file-format). Reads the nodes and the elements that are
+// tetrahedra with four corners; skips points, lines and faces, which only name parts of the boundary.
 
 namespace echinus {
 
@@ -16,7 +16,7 @@ namespace {
 
 constexpr std::int64_t kMshTetrahedron = 4;
 
-/// The nodes of an element type of at most two dimensions; none for others.
+/// The number of nodes of an element type with at most two dimensions; none for other types.
 std::optional<int> flat_node_count(std::int64_t type) {
     constexpr std::array<std::array<int, 2>, 17> kFlat{{{1, 2},
                                                         {2, 3},
@@ -40,7 +40,7 @@ std::optional<int> flat_node_count(std::int64_t type) {
     return {};
 }
 
-/// The sections $Nodes and $Elements.
+/// Reads the sections $Nodes and $Elements.
 class MshReader {
   public:
     MshReader(NumberSource& numbers, bool is_binary, bool is_version_4)
@@ -80,7 +80,7 @@ class MshReader {
 
     // ---- Version 2.2
 
-    /// In a binary file, too, this number is text.
+    /// This number is text even in a binary file.
     std::size_t count_line(const char* what) {
         const std::string_view word = numbers_.require_line(what)[0];
         std::int64_t count = 0;
@@ -170,7 +170,7 @@ class MshReader {
                                                   std::to_string(element_count) + " as the section declares");
     }
 
-    // ---- Both
+    // ---- Both versions
 
     void add_node(std::int64_t number) {
         const auto index = static_cast<std::uint32_t>(mesh_.vertices.size());
@@ -207,7 +207,7 @@ class MshReader {
     NumberSource& numbers_;
     bool is_binary_, is_version_4_;
     TetrahedraInFile mesh_;
-    std::unordered_map<std::int64_t, std::uint32_t> index_of_; ///< of a node, by its number
+    std::unordered_map<std::int64_t, std::uint32_t> index_of_; ///< the index of a node, by its number
 };
 
 } // namespace

@@ -35,7 +35,8 @@ class ObjReader {
         const std::string_view keyword = scanner_.next_word();
         if (keyword == "v")
             read_vertex();
-        else if (keyword == "f" || keyword == "fo") // fo: of versions before 3, which 3 reads as f
+        else if (keyword == "f" ||
+                 keyword == "fo") // fo is a keyword of versions before 3, which version 3 reads as f
             read_face();
         else if (keyword == "l")
             read_line();
@@ -56,7 +57,7 @@ class ObjReader {
         require_nothing_swallowed("v");
     }
 
-    /// Of a name that ends with a backslash, as a Windows path may, the next statement would become a part.
+    /// If a name ends with a backslash, as a Windows path may, the next statement would become part of it.
     void require_nothing_swallowed(std::string_view keyword) {
         constexpr std::array<std::string_view, 4> kRead{"v", "f", "fo", "l"};
         if (!scanner_.is_joined()) return;
@@ -80,7 +81,7 @@ class ObjReader {
         mesh_.corner_counts.push_back(corner_count);
     }
 
-    /// A line of k corners is k - 1 polygons of two.
+    /// A line with k corners gives k - 1 polygons with two corners.
     void read_line() {
         for (std::uint32_t last = vertex_index(scanner_.next_word()); !scanner_.at_end_of_line();) {
             const std::uint32_t next = vertex_index(scanner_.next_word());
@@ -90,7 +91,8 @@ class ObjReader {
         }
     }
 
-    /// Of a corner v, v/vt, v//vn or v/vt/vn: from 1, or negative and counted back from the latest vertex.
+    /// The vertex index of a corner v, v/vt, v//vn or v/vt/vn, which counts from 1, or is negative and counts
+    /// back from the latest vertex.
     std::uint32_t vertex_index(std::string_view corner) {
         const std::string_view digits = corner.substr(0, corner.find('/'));
         std::int64_t number = 0;
@@ -110,7 +112,7 @@ class ObjReader {
         return static_cast<std::uint32_t>(index);
     }
 
-    /// At the end, since a face may precede its vertices.
+    /// Called at the end, since a face may precede its vertices.
     void require_largest_index() const {
         if (largest_index_ >= static_cast<std::int64_t>(mesh_.vertices.size()))
             scanner_.fail_at(line_of_largest_, ErrorCode::InvalidMesh,

@@ -3,10 +3,10 @@
 
 #include <limits>
 
-// The format: "Object File Format" of Geomview (https://www.geomview.org/docs/html/OFF.html), as text. A
-// vertex has a line, and so has a face; normals, colours and texture coordinates follow on it and are
-// ignored. Where the lines are not as many as vertices and faces, the numbers of a vertex and the corners of
-// a face may go on in the next line.
+// The format: "Object File Format" of Geomview (https://www.geomview.org/docs/html/OFF.html), as text. Each
+// vertex and each face has a line; normals, colours and texture coordinates that follow on it are ignored. If
+// the number of lines differs from the number of vertices and faces, the numbers of a vertex and the corners
+// of a face may continue on the next line.
 
 namespace echinus {
 
@@ -28,7 +28,7 @@ class OffReader {
         const std::size_t face_count = scanner_.next_count("the number of faces");
         skip_edge_count();
         begin_body(vertex_count + face_count);
-        // Nothing is reserved: the counts may be false, but the lines exist.
+        // No memory is reserved, since the counts may be wrong, whereas the lines exist.
         for (std::size_t i = 0; i < vertex_count; ++i) read_vertex(promised("vertex", i, vertex_count));
         for (std::size_t i = 0; i < face_count; ++i) read_face(promised("face", i, face_count));
         scanner_.read_within_lines();
@@ -39,8 +39,8 @@ class OffReader {
     }
 
   private:
-    /// [ST][C][N][4][n]OFF, with which the number of vertices may be one word, as in the files of ModelNet.
-    /// Geomview lets files do without it.
+    /// [ST][C][N][4][n]OFF, which may be one word with the number of vertices, as in the files of ModelNet.
+    /// Geomview accepts files without it.
     void read_keyword() {
         const std::string_view keyword = scanner_.next_word();
         std::int64_t number = 0;
@@ -80,7 +80,8 @@ class OffReader {
         scanner_.give_back(word);
     }
 
-    /// It is often missing, and may have a line of its own, where no vertex has a single number.
+    /// The number of edges is often missing; it may also have a line of its own, because no vertex consists
+    /// of a single number.
     void skip_edge_count() {
         if (!scanner_.at_end_of_line()) {
             scanner_.next_count("the number of edges");

@@ -40,12 +40,12 @@ struct PlyHeader {
     PlyFormat format{};
     std::vector<PlyElement> elements;
 
-    /// How many elements of this name the file has.
+    /// The number of elements with this name in the file.
     std::size_t count_of(const std::string& name) const;
     std::size_t element_count() const; ///< of all names
 };
 
-/// Both the names of the first description and those that came later.
+/// Accepts both the names of the first description and later ones.
 PlyType type_named(std::string_view word, const LineScanner& scanner) {
     using enum PlyType;
     static constexpr std::array<std::pair<std::string_view, PlyType>, 16> kTypes{{{"char", Int8},
@@ -71,7 +71,7 @@ PlyType type_named(std::string_view word, const LineScanner& scanner) {
     return found->second;
 }
 
-/// The first word of the next line that is no comment.
+/// The first word of the next line that is not a comment.
 std::string_view next_keyword(LineScanner& scanner, const char* expected) {
     for (;;) {
         scanner.require_line(expected);
@@ -132,7 +132,7 @@ std::size_t PlyHeader::element_count() const {
     return count;
 }
 
-/// Reads up to and with the line end_header.
+/// Reads up to and including the line end_header.
 /// @throws Error WrongFormat or Damaged
 PlyHeader read_ply_header(LineScanner& scanner) {
     scanner.require_line("the word ply");
@@ -153,7 +153,7 @@ PlyHeader read_ply_header(LineScanner& scanner) {
 }
 
 /// The elements as text. Each has a line, on which further numbers may follow, as some programs write them;
-/// where the lines are not as many as the elements, their numbers are read across lines.
+/// if the number of lines differs from the number of elements, their numbers are read across lines.
 class TextBody {
   public:
     TextBody(LineScanner& scanner, std::size_t element_count) : scanner_(scanner) {
@@ -198,7 +198,7 @@ class BinaryBody {
         return rounded;
     }
     void skip(PlyType type) { number(type); }
-    /// A line's end may follow, or what fills up a block.
+    /// A line break may follow, or padding of the last block.
     bool at_end() const {
         constexpr std::string_view kFilling{" \r\n\0\x1a", 5};
         return source_.bytes.substr(bytes_.offset()).find_first_not_of(kFilling) == std::string_view::npos;
@@ -269,7 +269,7 @@ bool is_list_of_corners(const PlyProperty& property) {
     return property.count_type && (property.name == "vertex_indices" || property.name == "vertex_index");
 }
 
-/// Of the next face.
+/// The index of a corner of the next face.
 template <typename Body>
 std::uint32_t checked_corner(const Body& body, std::int64_t index, std::size_t vertex_count,
                              const PolygonMesh& mesh) {
@@ -290,12 +290,12 @@ void read_corners(Body& body, const PlyProperty& list, std::size_t vertex_count,
 }
 
 /// Strips of triangles, with -1 between them: each corner after the second of a strip makes a triangle with
-/// the two before it, turned round in every second one. Triangles that have a corner twice only lead to
-/// where a strip goes on.
+/// the two before it, and the orientation of every second triangle is reversed. Triangles that have a corner
+/// twice only connect parts of a strip.
 template <typename Body>
 void read_strips(Body& body, const PlyProperty& list, std::size_t vertex_count, PolygonMesh& mesh) {
     std::array<std::uint32_t, 2> last{};
-    std::size_t corner_count = 0; // of the strip so far
+    std::size_t corner_count = 0; // in the present strip
     for (std::size_t left = list_length(body, list); left > 0; --left) {
         const std::int64_t index = body.integer(list.type);
         if (index == -1) {
@@ -348,7 +348,8 @@ void require_coordinates(const PlyElement& vertices, const MeshSource& source) {
             source.fail(ErrorCode::Damaged, std::string("the vertices have no property ") + axis);
 }
 
-/// Elements without properties have no bytes, and their number could be any; positions need all three axes.
+/// Elements without properties have no bytes, so their number could be arbitrary; positions need all three
+/// axes.
 void require_sense(const PlyHeader& header, const MeshSource& source) {
     for (const PlyElement& element : header.elements) {
         if (element.properties.empty() && element.count > 0)
@@ -361,8 +362,8 @@ void require_sense(const PlyHeader& header, const MeshSource& source) {
     }
 }
 
-/// Where the bytes begin. One that follows the header may look like the second half of a line's end, but
-/// does not belong to it where the other lines end with \r alone.
+/// The offset at which the bytes begin. A byte after the header may look like the second half of a line
+/// break, but does not belong to it if the other lines end with \r alone.
 std::size_t end_of_header(const LineScanner& scanner, std::string_view bytes) {
     const std::size_t first_end = bytes.find_first_of("\r\n");
     const bool lines_end_with_cr = bytes[first_end] == '\r' && bytes[first_end + 1] != '\n';

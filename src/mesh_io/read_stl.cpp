@@ -33,7 +33,7 @@ std::uint64_t promised_size(const MeshSource& source) {
     return kBytesBeforeFaces + kBytesPerFace * promised_face_count(source);
 }
 
-/// Tells also those apart from text that begin with the word solid and look like text.
+/// Also recognises binary files that begin with the word solid and look like text.
 bool has_size_of_binary(const MeshSource& source) {
     return source.bytes.size() >= kBytesBeforeFaces && source.bytes.size() == promised_size(source);
 }
@@ -45,8 +45,8 @@ bool has_size_of_binary(const MeshSource& source) {
                                         std::to_string(promised_size(source)) + " bytes, but " + found);
 }
 
-/// Some programs write bytes of their own after the faces, which are ignored. Not so where they may be faces:
-/// the number in the head is then wrong, or another file was appended.
+/// Some programs write bytes of their own after the faces, which are ignored, unless they may be faces: then
+/// the number in the head is wrong, or another file was appended.
 void require_harmless_tail(const MeshSource& source) {
     const MeshSource tail{source.name, source.bytes.substr(promised_size(source))};
     const std::size_t size = tail.bytes.size();
@@ -80,8 +80,8 @@ PolygonMesh read_binary(const MeshSource& source) {
 
 // ---- Text ----
 
-/// Words in small letters, in capitals or mixed; `end loop` is read as `endloop`, and `outerloop` as
-/// `outer loop`.
+/// Words may be in lower, upper or mixed case; `end loop` is read as `endloop`, and `outerloop` as `outer
+/// loop`.
 class TextReader {
   public:
     explicit TextReader(const MeshSource& source) : scanner_(source) { scanner_.read_across_lines(); }
@@ -122,8 +122,8 @@ class TextReader {
     }
     void require_keyword(std::string_view expected) { require(expected, next_keyword(in_quotes(expected))); }
 
-    /// The next keyword of the line, where others than keywords are normals and colours, or else the first
-    /// word of the next line.
+    /// The next keyword of the line, on which all other words are normals and colours, or else the first word
+    /// of the next line.
     std::string next_keyword(const std::string& expected) {
         constexpr std::array<std::string_view, 6> kKeywords{"facet",   "outerloop", "vertex",
                                                             "endloop", "endfacet",  "endsolid"};
@@ -145,9 +145,9 @@ class TextReader {
     PolygonMesh mesh_;
 };
 
-// ---- Which of them ----
+// ---- Text or bytes ----
 
-/// Whether the bytes of the head, or of the text, could be text.
+/// Whether the bytes of the head, or of a shorter file, could be text.
 bool has_head_of_text(std::string_view bytes) {
     const std::string_view head = bytes.substr(0, kBytesBeforeFaces);
     return std::none_of(head.begin(), head.end(),

@@ -5,8 +5,8 @@
 
 // The format: the manual of TetGen, chapter "File Formats"
 // (https://wias-berlin.de/software/tetgen/fformats.html): a .node file with the points and an .ele file with
-// the tetrahedra. The first point's number, 0 or 1, is that from which both count. Attributes, markers and
-// regions are ignored.
+// the tetrahedra. The number of the first point, 0 or 1, is the number from which both files count.
+// Attributes, markers and regions are ignored.
 
 namespace echinus {
 

@@ -44,7 +44,7 @@ std::vector<std::string_view> NumberSource::require_line(const std::string& what
     return words;
 }
 
-// ---- In words ----
+// ---- Numbers as words ----
 
 std::vector<std::string_view> TextNumbers::next_line() {
     std::vector<std::string_view> words;
@@ -70,7 +70,7 @@ void TextNumbers::skip_to_line(const std::string& word) {
     while (scanner_.next_word() != word);
 }
 
-// ---- In bytes ----
+// ---- Numbers as bytes ----
 
 std::vector<std::string_view> BinaryNumbers::next_line() {
     constexpr std::size_t kLongest = 1024;

@@ -30,7 +30,7 @@ constexpr std::size_t kMostCachePositions = std::size_t{1} << 28; // 3.2 GB
 
 constexpr std::array<std::string_view, 3> kEndings{".gltf", ".glb", ".3ds"};
 
-/// The mesh of the file as read_mesh() gives it, and where its vertices come from.
+/// The mesh of the file as read_mesh() returns it, with the source of each vertex.
 WeldedMesh mesh_of(const SceneFile& file, const MeshSource& source) {
     return weld_with_sources(triangulate(join(file, source), source));
 }
@@ -67,12 +67,12 @@ void require_motion(const std::vector<Vec3f>& samples, std::size_t vertex_count,
                 "that it moves; bind the mesh to the skeleton");
 }
 
-/// Do files with this ending have animations that read_animation() reads?
+/// Do files with this extension contain animations that read_animation() reads?
 bool has_animations(const std::filesystem::path& path) {
     return std::find(kEndings.begin(), kEndings.end(), lower_case_ending(path)) != kEndings.end();
 }
 
-/// read_vertex_cache() of a file with a mesh and an animation.
+/// read_vertex_cache() for a file with a mesh and an animation.
 /// @throws Error as read_vertex_cache() does
 VertexCache read_animation(const std::filesystem::path& path, const TriangleMesh& mesh,
                            double frames_per_second, std::string_view animation) {

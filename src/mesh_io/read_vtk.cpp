@@ -8,8 +8,8 @@
 
 // The format: "VTK File Formats for VTK Version 4.2", the simple legacy format, an unstructured grid, as text
 // or as bytes, big endian (https://docs.vtk.org/en/latest/design_documents/VTKFileFormats.html); and cells in
-// arrays of offsets and corners, as version 5.1 has them. Data of points and cells, which follow, are
-// ignored, and so are fields and metadata between the parts, as ParaView and VisIt write them.
+// arrays of offsets and corners, as in version 5.1. The data of points and cells that follow are ignored, and
+// so are the fields and metadata between the parts that ParaView and VisIt write.
 
 namespace echinus {
 
@@ -30,7 +30,7 @@ std::optional<NumberType> type_named(std::string_view name) {
     return {};
 }
 
-/// Bytes of a value in a field; 0 for a type that is not passed over.
+/// The number of bytes of a value in a field; 0 for a type that cannot be skipped.
 std::size_t size_of_type(std::string_view name) {
     constexpr std::array<std::pair<std::string_view, std::size_t>, 14> kSizes{{{"char", 1},
                                                                                {"unsigned_char", 1},
@@ -88,7 +88,8 @@ class VtkReader {
         return static_cast<std::size_t>(value);
     }
 
-    /// Arrays, each with a line of its name, the number of components, that of tuples and their type.
+    /// Skips arrays, each of which begins with a line with its name, the number of components, the number of
+    /// tuples and the type.
     void skip_field(const std::vector<std::string_view>& words) {
         is_in_metadata_ = false;
         for (std::size_t left = count(words[2]); left > 0; --left) {
@@ -115,7 +116,8 @@ class VtkReader {
         for (std::size_t i = 0; i < point_count; ++i) mesh_.vertices.push_back(numbers_.position(*type));
     }
 
-    /// Each cell as the number of its corners and the corners; since version 5.1 in two arrays.
+    /// Reads cells: each is given by the number of its corners and the corners; since version 5.1, by two
+    /// arrays.
     void read_cells(const std::vector<std::string_view>& words) {
         is_in_metadata_ = false;
         const std::size_t first = count(words[1]), second = count(words[2]);
@@ -190,15 +192,15 @@ class VtkReader {
 
     NumberSource& numbers_;
     bool is_version_5_;
-    bool is_in_metadata_ = false; ///< lines of which only those are known that end it
+    bool is_in_metadata_ = false; ///< in which only the lines that end it are recognised
     TetrahedraInFile mesh_;
     std::vector<std::uint32_t> corners_;
     std::vector<std::size_t> corner_counts_;
     std::vector<std::int64_t> types_;
 };
 
-/// The first two lines: the mark with the version, and a title that may be anything. Gives where the third
-/// begins.
+/// Skips the first two lines: the mark with the version, and a title that may be anything. Returns the offset
+/// at which the third line begins.
 std::size_t end_of_title(const MeshSource& source) {
     const std::size_t end_of_mark = source.bytes.find('\n');
     const std::size_t end =

@@ -15,13 +15,12 @@ struct Point {
     friend bool operator==(const Point&, const Point&) = default;
 };
 
-/// Positive when a, b, c turn to the left.
+/// Positive if a, b, c turn to the left.
 double turn(const Point& a, const Point& b, const Point& c) {
     return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
 }
 
-/// A polygon seen against its normal, so that it runs counter-clockwise. The corners that are left form a
-/// ring.
+/// A polygon seen against its normal, so that it runs counter-clockwise. The remaining corners form a ring.
 class Outline {
   public:
     Outline(std::span<const std::uint32_t> corners, const std::vector<Vec3f>& vertices);
@@ -45,7 +44,7 @@ class Outline {
     std::vector<std::uint32_t> previous_;
 };
 
-/// Normal of a polygon that need not be flat, after Newell: twice its projected areas.
+/// The normal of a polygon, which need not be flat, by Newell's method: twice its projected areas.
 Vec3d newell_normal(std::span<const std::uint32_t> corners, const std::vector<Vec3f>& vertices) {
     const Vec3d origin(vertices[corners[0]]);
     Vec3d normal;
@@ -78,8 +77,8 @@ bool Outline::is_strictly_convex() const {
     return true;
 }
 
-/// The corner constraints out and no other one lies in the triangle that its removal would cut off. Corners
-/// at the same place as one of the triangle's are no obstacle: a slit that leads to a hole passes each place
+/// The corner is convex and no other corner is in the triangle that its removal would cut off. Corners that
+/// coincide with one of the triangle's corners do not matter: a slit that leads to a hole passes each point
 /// twice.
 bool Outline::is_ear(std::uint32_t i) const {
     if (!(turn_at(i) > 0)) return false;

@@ -53,8 +53,8 @@ bool has_origin(const Mesh& mesh) {
     return mesh.origin != Vec3d{};
 }
 
-/// The coordinate in the frame of files: of the numbers that lead back to the same float, the one with the
-/// fewest decimals.
+/// The coordinate in the frame of files: the number with the fewest decimals of those that give the same
+/// float when they are read.
 double in_file(float local, double origin) {
     const double exact = local + origin;
     for (int decimals = 0; decimals < std::numeric_limits<double>::max_digits10; ++decimals) {
@@ -72,7 +72,7 @@ Vec3d in_file(const Vec3f& local, const Vec3d& origin) {
     return {in_file(local.x, origin.x), in_file(local.y, origin.y), in_file(local.z, origin.z)};
 }
 
-/// In the frame of files: as floats, or as doubles where the mesh has an origin.
+/// Writes positions in the frame of files: as floats, or as doubles if the mesh has an origin.
 template <typename Mesh, typename Write>
 void for_each_position(const Mesh& mesh, const Write& write) {
     for (const Vec3f& vertex : mesh.vertices)

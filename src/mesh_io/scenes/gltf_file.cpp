@@ -26,9 +26,9 @@ namespace fs = std::filesystem;
 constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
 constexpr std::size_t kChunkHeadSize = 8; // length and type
 
-/// Refuses two texts that the parser would take: two values with one key, of which it keeps the last (section
-/// 2.7 of the specification forbids them), and brackets in brackets without end. A pass of its own: the
-/// parser's callback takes time quadratic in the elements of an array.
+/// Refuses two kinds of text that the parser would accept: two values with one key, of which it keeps the
+/// last (section 2.7 of the specification forbids them), and brackets nested without limit. This is a
+/// separate pass, because the parser's callback takes time quadratic in the number of elements of an array.
 class StrictPass : public nlohmann::json_sax<json> {
   public:
     explicit StrictPass(const MeshSource& source) : source_(source) {}
@@ -63,7 +63,7 @@ class StrictPass : public nlohmann::json_sax<json> {
     bool number_float(number_float_t, const string_t&) override { return true; }
     bool string(string_t&) override { return true; }
     bool binary(binary_t&) override { return true; }
-    /// The parser finds it again and says more about it.
+    /// The parser will find the error again and report more about it.
     bool parse_error(std::size_t, const std::string&, const json::exception&) override { return false; }
 
   private:
@@ -76,10 +76,10 @@ class StrictPass : public nlohmann::json_sax<json> {
 
     const MeshSource& source_;
     int depth_ = 0;
-    std::vector<std::set<std::string>> keys_; // of the objects that are open
+    std::vector<std::set<std::string>> keys_; // the keys of the open objects
 };
 
-/// The chunks of a GLB file (section 4.4). Chunks that are not padded to four bytes are taken as they are.
+/// The chunks of a GLB file (section 4.4). Chunks that are not padded to four bytes are accepted.
 struct GlbChunks {
     std::string_view text;
     std::optional<std::string_view> binary;
@@ -125,7 +125,7 @@ std::optional<unsigned> hexadecimal_digit(char c) {
     return std::nullopt;
 }
 
-/// Replaces %20 and the like by the byte that is meant (RFC 3986, section 2.1).
+/// Replaces %20 and similar codes by the bytes that they stand for (RFC 3986, section 2.1).
 std::string percent_decoded(std::string_view uri) {
     std::string text;
     for (std::size_t i = 0; i < uri.size(); ++i) {
@@ -138,7 +138,7 @@ std::string percent_decoded(std::string_view uri) {
     return text;
 }
 
-/// White space and the padding at the end are passed over (RFC 4648).
+/// White space and the padding at the end are skipped (RFC 4648).
 std::string base64_decoded(std::string_view text, const GltfValue& buffer) {
     constexpr std::string_view kDigits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
     std::array<int, 256> value_of{};
@@ -177,7 +177,7 @@ std::string shown(std::string_view name) {
     return printable(name.substr(0, kMostLetters));
 }
 
-/// Extensions under which positions and faces mean what they do without it, or that are read.
+/// Extensions that do not change the meaning of positions and faces, or that are supported.
 bool is_readable_extension(std::string_view name) {
     constexpr std::string_view kRead[] = {"KHR_mesh_quantization", "EXT_mesh_gpu_instancing"};
     constexpr std::string_view kOfAppearance[] = {"KHR_materials_", "KHR_texture_", "EXT_texture_",
@@ -194,7 +194,7 @@ void require_beginning_of_gltf(const MeshSource& beginning) {
     std::string_view text = beginning.bytes;
     if (text.starts_with(kByteOrderMark)) text.remove_prefix(kByteOrderMark.size());
     const std::size_t first = text.find_first_not_of(" \t\r\n");
-    // After nothing but white space the brace may still follow.
+    // If there is only white space, the brace may still follow.
     if (first != std::string_view::npos && text[first] != '{')
         beginning.fail(ErrorCode::WrongFormat, "the brace with which a glTF file begins was not found");
 }
@@ -335,8 +335,9 @@ std::string_view GltfFile::read_beside(const GltfValue& buffer, const std::strin
         const fs::path folder = utf8_path(source_.name).parent_path();
         std::error_code ignored;
         fs::path path = folder / utf8_path(percent_decoded(uri));
-        if (!fs::exists(path, ignored)) path = folder / utf8_path(uri); // a name with a percent sign in it
-        // A pipe or a device named here could have no end.
+        if (!fs::exists(path, ignored))
+            path = folder / utf8_path(uri); // the name itself may contain a percent sign
+        // A pipe or a device might be endless.
         if (!fs::is_regular_file(path, ignored))
             buffer.fail("is in the file " + shown(uri) + ", which is not there or is not a regular file",
                         ErrorCode::Unreadable);
@@ -415,7 +416,7 @@ Integer integer_at(const char* bytes) {
     return static_cast<Integer>(value);
 }
 
-/// The largest value of the type stands for 1, and so does the smallest for -1.
+/// The largest value of the type stands for 1, and the smallest for -1.
 template <typename Integer>
 double fraction(Integer value) {
     return std::max(-1.0, static_cast<double>(value) / std::numeric_limits<Integer>::max());
@@ -439,7 +440,7 @@ GltfAccessor::GltfAccessor(GltfFile& file, const GltfValue& user)
     width_ = width_of(accessor.member("type"));
     count_ = accessor.member("count").natural_number();
     is_normalized_ = accessor.member("normalized").boolean();
-    if (count_ > std::numeric_limits<std::uint32_t>::max()) // by which they are numbered
+    if (count_ > std::numeric_limits<std::uint32_t>::max()) // elements are numbered by 32 bits
         accessor.member("count").fail("is larger than 2^32 - 1");
     if (accessor.member("bufferView").exists())
         dense_ = elements_of(accessor, count_, width_ * component_size_);
@@ -461,7 +462,7 @@ GltfAccessor::Elements GltfAccessor::elements_of(const GltfValue& owner, std::si
     const std::size_t stride = view.member("byteStride").optional_number().value_or(size);
     if (stride < size) view.member("byteStride").fail("is shorter than an element of " + owner.path());
     const std::size_t offset = owner.member("byteOffset").optional_number().value_or(0);
-    // In this form nothing overflows: the last element ends at offset + (count - 1) stride + size.
+    // This form does not overflow: the last element ends at offset + (count - 1) stride + size.
     const bool fits = count == 0 || (offset <= length && size <= length - offset &&
                                      (count - 1) <= (length - offset - size) / stride);
     if (!fits)

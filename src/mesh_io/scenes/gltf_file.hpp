@@ -17,9 +17,9 @@
 
 namespace echinus {
 
-/// A value of a glTF document and the path to it, with which sentences name it: meshes[0].primitives[2]. A
-/// value that is not there has no members and no elements. All members throw Error InvalidMesh for a value
-/// of another kind than the one asked for.
+/// A value of a glTF document and the path to it, by which sentences name it: meshes[0].primitives[2]. An
+/// absent value has no members and no elements. All member functions throw Error InvalidMesh if the value is
+/// not of the requested kind.
 class GltfValue {
   public:
     GltfValue(const MeshSource& source, const nlohmann::json* value, std::string path)
@@ -32,11 +32,11 @@ class GltfValue {
 
     std::size_t natural_number() const; ///< up to 2^53
     std::optional<std::size_t> optional_number() const;
-    /// [count] numbers; nothing when the value is not there.
+    /// [count] numbers; none if the value is absent.
     std::optional<std::vector<double>> numbers(std::size_t count) const;
-    std::vector<double> numbers() const; ///< however many
-    std::string string() const;          ///< "" when it is not there
-    bool boolean() const;                ///< false when it is not there
+    std::vector<double> numbers() const; ///< any number of them
+    std::string string() const;          ///< "" if it is absent
+    bool boolean() const;                ///< false if it is absent
 
     /// @param what  completes the sentence that begins with the path: "is not a number"
     [[noreturn]] void fail(const std::string& what, ErrorCode code = ErrorCode::InvalidMesh) const;
@@ -49,15 +49,16 @@ class GltfValue {
     std::string path_;
 };
 
-/// A glTF 2.0 file: its document, and the bytes of its buffers, whether they lie in the binary part of a GLB
-/// file, in the text as base64, or in a file beside it.
+/// A glTF 2.0 file: its document, and the bytes of its buffers, which are in the binary part of a GLB file,
+/// in the text as base64, or in separate files.
 ///
-/// Not tinygltf (2.7): it reads what is simple, the document, into structures of its own, and leaves to its
-/// users all that can go wrong: the bounds, strides and types of accessors, sparse ones, trees of nodes.
+/// It does not use tinygltf (2.7), which reads the document, the simple part, into structures of its own, but
+/// leaves everything that can go wrong to its users: the bounds, strides and types of accessors, sparse
+/// accessors, and trees of nodes.
 class GltfFile {
   public:
-    /// @throws Error WrongFormat for other versions and for required extensions that are not read, Damaged
-    /// for bytes that are missing and text that is no JSON
+    /// @throws Error WrongFormat for other versions and for required extensions that are not supported,
+    /// Damaged for missing bytes and for text that is not JSON
     explicit GltfFile(const MeshSource& source);
     GltfFile(const GltfFile&) = delete; // values refer to it
     GltfFile& operator=(const GltfFile&) = delete;
@@ -66,7 +67,7 @@ class GltfFile {
     GltfValue root() const { return {source_, &document_, ""}; }
     /// The element `index` of the root's array `key`, as `user` names it.
     const GltfValue& element(const char* key, const GltfValue& user);
-    /// The bytes of a buffer. @throws Error Unreadable when there is no such file, Damaged when it is short
+    /// The bytes of a buffer. @throws Error Unreadable if there is no such file, Damaged if it is too short
     std::string_view buffer(const GltfValue& user);
 
     /// Budget::spend()
@@ -81,26 +82,27 @@ class GltfFile {
     const MeshSource& source_;
     std::optional<std::string_view> binary_; ///< of a GLB file
     nlohmann::json document_;
-    std::map<std::string, std::vector<GltfValue>> arrays_; ///< of the root, once asked for
-    std::map<std::size_t, std::string_view> buffers_;      ///< those that were asked for
-    std::map<std::size_t, std::string> decoded_;           ///< of buffers that the text holds
-    std::map<std::string, std::vector<std::byte>> files_;  ///< beside this one; several buffers may name one
+    std::map<std::string, std::vector<GltfValue>> arrays_; ///< of the root, after they were requested
+    std::map<std::size_t, std::string_view> buffers_;      ///< those that were requested
+    std::map<std::size_t, std::string> decoded_;           ///< of buffers that are in the text
+    std::map<std::string, std::vector<std::byte>>
+        files_; ///< the separate files; several buffers may name the same one
     Budget budget_;
 };
 
 /// The numbers of an accessor (glTF 2.0, sections 3.6.2 and 5.1), with any stride, sparse or not. They are
-/// read when they are asked for.
+/// read on request.
 class GltfAccessor {
   public:
     /// @param user  the value that names the accessor, in sentences
-    /// @throws Error Damaged when a buffer ends before the accessor does, InvalidMesh for what makes no sense
+    /// @throws Error Damaged if a buffer ends before the accessor does, InvalidMesh for contradictions
     GltfAccessor(GltfFile& file, const GltfValue& user);
 
     std::size_t count() const { return count_; }
-    std::size_t width() const { return width_; } ///< numbers of an element
+    std::size_t width() const { return width_; } ///< the number of numbers per element
     bool has_own_bytes() const { return !dense_.bytes.empty(); }
 
-    /// Integers that stand for fractions become them (section 3.6.2.2).
+    /// Integers that represent fractions are converted to these (section 3.6.2.2).
     /// @pre element < count(), component < width()
     double number(std::size_t element, std::size_t component) const;
     Vec3d vector(std::size_t element) const {
@@ -116,7 +118,7 @@ class GltfAccessor {
 
   private:
     struct Elements {
-        std::string_view bytes; ///< from the first element on; empty where all numbers are 0
+        std::string_view bytes; ///< from the first element on; empty if all numbers are 0
         std::size_t stride = 0;
     };
 

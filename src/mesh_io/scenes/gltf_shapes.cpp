@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::uint32_t kUnused = std::numeric_limits<std::uint32_t>::max();
 
-// OpenGL's names of the ways in which corners follow each other.
+// OpenGL's names for the order of corners in primitives.
 enum Mode : std::size_t { Points, Lines, LineLoop, LineStrip, Triangles, TriangleStrip, TriangleFan };
 
 Mode mode_of(const GltfValue& primitive) {
@@ -27,7 +27,7 @@ void add(std::initializer_list<std::uint32_t> corners, SceneShape& shape) {
     shape.corner_counts.push_back(static_cast<std::uint32_t>(corners.size()));
 }
 
-/// Where a strip goes on elsewhere, it has triangles with a corner twice.
+/// A strip that continues elsewhere contains triangles with a repeated corner.
 void add_triangle_of_strip(std::uint32_t a, std::uint32_t b, std::uint32_t c,
                            const std::vector<Vec3d>& positions, SceneShape& shape) {
     if (positions[a] != positions[b] && positions[b] != positions[c] && positions[c] != positions[a])
@@ -58,7 +58,7 @@ void add_polygons(const std::vector<std::uint32_t>& corners, const std::vector<V
         return;
     case Triangles:
         return add_list(corners, 3, primitive, shape);
-    case TriangleStrip: // every other triangle of a strip runs the other way round
+    case TriangleStrip: // every other triangle of a strip has the reverse orientation
         for (std::size_t i = 0; i + 2 < count; ++i)
             add_triangle_of_strip(corners[i], corners[i + 1 + i % 2], corners[i + 2 - i % 2], positions,
                                   shape);
@@ -150,7 +150,7 @@ std::vector<std::uint32_t> GltfShapes::corners_of(const GltfValue& primitive, st
     return corners;
 }
 
-/// Numbers the corners' vertices anew.
+/// Renumbers the corners' vertices.
 /// @return the old numbers, ascending
 std::vector<std::uint32_t> GltfShapes::keep_used_vertices(std::size_t vertex_count, SceneShape& shape) {
     if (new_numbers_.size() < vertex_count) new_numbers_.resize(vertex_count, kUnused);

@@ -9,8 +9,8 @@
 
 namespace echinus {
 
-/// Makes shapes of the primitives of glTF meshes (glTF 2.0, section 3.7.2). However many primitives share
-/// an accessor, the time is linear in what they use of it.
+/// Makes shapes of the primitives of glTF meshes (glTF 2.0, section 3.7.2). Even if many primitives share an
+/// accessor, the time is linear in the number of elements that they use.
 class GltfShapes {
   public:
     explicit GltfShapes(GltfFile& file) : file_(file) {}
@@ -37,7 +37,8 @@ class GltfShapes {
     std::vector<SceneShape> shapes_;
     std::map<std::size_t, std::vector<std::size_t>> shapes_of_meshes_;
     std::map<std::size_t, std::vector<Vec3d>> positions_; ///< by accessor
-    std::vector<std::uint32_t> new_numbers_; ///< of vertices; all kUnused but while a shape is being made
+    std::vector<std::uint32_t>
+        new_numbers_; ///< of vertices; all are kUnused except while a shape is being made
 };
 
 } // namespace echinus

@@ -17,15 +17,15 @@ namespace echinus {
 
 namespace {
 
-/// A chunk of a 3DS file, which has an id, its size with this head, and its content, often other chunks
+/// A chunk of a 3DS file, which has an id, its size including this head, and its content, often other chunks
 /// (Autodesk, "3D Studio File Toolkit", chunk list).
 struct Chunk3ds {
     std::uint16_t id;
-    std::size_t begin, end; ///< the content's
+    std::size_t begin, end; ///< of the content
 };
 
-/// Calls visit(chunk) for each chunk in another one, from `begin` on.
-/// @throws Error Damaged when a chunk reaches beyond the one that it is in
+/// Calls visit(chunk) for each chunk inside another one, from `begin` on.
+/// @throws Error Damaged if a chunk extends beyond the one that contains it
 template <typename Visit>
 void for_each_chunk_3ds(const MeshSource& source, std::size_t begin, std::size_t end, Visit&& visit) {
     constexpr std::size_t kHeadSize = 6;
@@ -42,7 +42,7 @@ void for_each_chunk_3ds(const MeshSource& source, std::size_t begin, std::size_t
     }
 }
 
-/// The numbers of one chunk.
+/// Reads the numbers of one chunk.
 class ChunkReader3ds {
   public:
     ChunkReader3ds(const MeshSource& source, const Chunk3ds& chunk)
@@ -58,7 +58,7 @@ class ChunkReader3ds {
         const double x = next_float(), y = next_float(), z = next_float();
         return {x, y, z};
     }
-    /// Up to a zero byte.
+    /// Reads a name up to a zero byte.
     std::string next_name() {
         std::string name;
         for (char c = next<char>(); c != '\0'; c = next<char>()) name += c;
@@ -92,8 +92,8 @@ class ChunkReader3ds {
 /// A node of the keyframes of a 3DS file: it moves an object.
 struct Node3ds {
     std::string object;
-    std::size_t number; ///< by which others refer to it
-    std::size_t parent; ///< the number of another one; kNoNode3ds for none
+    std::size_t number; ///< by which other nodes refer to it
+    std::size_t parent; ///< the number of the parent node; kNoNode3ds for none
     Vec3d pivot;        ///< of the object, at the origin of the node
     NodeMotion motion;
 };
@@ -106,7 +106,7 @@ constexpr std::uint16_t kFirstNode = 0xB001, kObjectNode = 0xB002, kLastNode = 0
 constexpr std::uint16_t kHead = 0xB010, kPivot = 0xB013, kPositions = 0xB020, kRotations = 0xB021,
                         kScales = 0xB022, kNumber = 0xB030;
 
-/// The format has no measure of time; Assimp plays 25 frames per second, too.
+/// The format does not specify a frame rate; Assimp assumes 25 frames per second, too.
 constexpr double kFramesPerSecond = 25;
 
 void skip_spline(ChunkReader3ds& reader) {
@@ -130,7 +130,7 @@ void read_track(const MeshSource& source, const Chunk3ds& chunk, Track<Value>& t
     }
 }
 
-/// Each key turns on from the one before it, clockwise as seen against its axis.
+/// Each key adds a rotation to that of the one before it, clockwise as seen against its axis.
 void read_rotations(const MeshSource& source, const Chunk3ds& chunk, Track<Rotation>& track) {
     read_track(source, chunk, track, [&](ChunkReader3ds& reader) {
         const double angle = reader.next_float();
@@ -173,7 +173,7 @@ SceneNode scene_node(const Node3ds& node, std::size_t parent) {
     return result;
 }
 
-/// @param keyframes  the chunk of all of them
+/// @param keyframes  the chunk of all keyframes
 /// @throws Error Damaged
 std::vector<Node3ds> read_nodes_3ds(const MeshSource& source, const Chunk3ds& keyframes) {
     std::vector<Node3ds> nodes;
@@ -181,16 +181,16 @@ std::vector<Node3ds> read_nodes_3ds(const MeshSource& source, const Chunk3ds& ke
     for_each_chunk_3ds(source, keyframes.begin, keyframes.end, [&](const Chunk3ds& chunk) {
         if (chunk.id < kFirstNode || chunk.id > kLastNode) return;
         if (chunk.id == kObjectNode) nodes.push_back(read_node(source, chunk, number));
-        ++number; // lights and cameras count
+        ++number; // lights and cameras are counted, too
     });
     return nodes;
 }
 
-/// Adds the nodes to a scene as they stand at their first keys.
-/// @return [nodes.size()] their numbers in scene.nodes; kNotPlaced of those that hang on each other, or on
-/// what moves no object: a light, a camera
+/// Adds the nodes to a scene, in the poses of their first keys.
+/// @return [nodes.size()] their numbers in scene.nodes; kNotPlaced for nodes that are each other's ancestors,
+/// or descendants of a node that moves no object, such as a light or a camera
 std::vector<std::size_t> place_nodes_3ds(const std::vector<Node3ds>& nodes, SceneFile& scene) {
-    std::map<std::size_t, std::vector<std::size_t>> children; // of the node of a number
+    std::map<std::size_t, std::vector<std::size_t>> children; // by the number of the parent node
     for (std::size_t i = nodes.size(); i-- > 0;) children[nodes[i].parent].push_back(i);
     std::vector<std::size_t> places(nodes.size(), kNotPlaced);
     struct Pending {
@@ -204,7 +204,7 @@ std::vector<std::size_t> place_nodes_3ds(const std::vector<Node3ds>& nodes, Scen
         pending.pop_back();
         const std::size_t place = places[node] = scene.nodes.size();
         scene.nodes.push_back(scene_node(nodes[node], parent == kNotPlaced ? place : parent));
-        // Of nodes with one number the first has the children.
+        // If several nodes have the same number, the first gets the children.
         for (const std::size_t child : std::exchange(children[nodes[node].number], {}))
             pending.push_back({child, place});
     }
@@ -221,7 +221,7 @@ constexpr std::uint16_t kFaceList = 0x4120;
 constexpr std::uint16_t kMatrix = 0x4160;
 constexpr std::uint16_t kKeyframes = 0xB000;
 
-/// A list's length, of which its chunk must have all elements.
+/// The length of a list, all of whose elements must be in its chunk.
 std::size_t next_count(ChunkReader3ds& reader, const char* of_what, std::size_t element_size,
                        const MeshSource& source) {
     const std::size_t count = reader.next_word();
@@ -259,10 +259,9 @@ Affine read_matrix(const MeshSource& source, const Chunk3ds& chunk) {
     return matrix;
 }
 
-/// Positions are those in the world, wherever keyframes move the object. Lists of one kind are joined, in
-/// whatever order they come. Each face gets vertices of its own, so that the welded mesh has them in the
-/// order of the faces.
-/// @param matrix  becomes that from the object's own frame to the world, if there is one
+/// Positions are those in the world, independently of keyframes. Lists of one kind are joined, in any order.
+/// Each face gets vertices of its own, so that the welded mesh has them in the order of the faces.
+/// @param matrix  out: the matrix from the object's own frame to the world, if there is one
 SceneShape read_shape(const MeshSource& source, const Chunk3ds& mesh, const std::string& name,
                       Affine& matrix) {
     SceneShape shape;
@@ -293,7 +292,7 @@ class Reader3ds {
 
     SceneFile read(Wanted wanted) {
         read_main_chunk();
-        scene_.nodes.push_back({"", 0, {}, {}}); // leads what no keyframes lead
+        scene_.nodes.push_back({"", 0, {}, {}}); // the node of all objects without keyframes
         places_ = place_nodes_3ds(nodes_, scene_);
         for (std::size_t i = 0; i < nodes_.size(); ++i) nodes_of_objects_[nodes_[i].object].push_back(i);
         std::map<std::string, std::size_t> object_counts, placed_counts;
@@ -302,8 +301,8 @@ class Reader3ds {
             const std::string& name = object_names_[object];
             std::vector<std::size_t> nodes = nodes_of_objects_[name];
             const std::size_t number = placed_counts[name]++;
-            // Objects of one name have a node each, in their order; of a single object, all nodes but the
-            // first place copies.
+            // If several objects have the same name, each gets one node, in their order; for a single object,
+            // all nodes but the first place copies.
             if (object_counts[name] > 1)
                 nodes = number < nodes.size() ? std::vector{nodes[number]} : std::vector<std::size_t>{};
             add_instances(object, nodes, wanted);
@@ -339,7 +338,7 @@ class Reader3ds {
         });
     }
 
-    /// At rest an object stands where the file has it, and its further nodes place copies; in an animation
+    /// At rest, an object is where the file places it, and its further nodes place copies; in an animation,
     /// all of its nodes move it.
     void add_instances(std::size_t object, const std::vector<std::size_t>& nodes, Wanted wanted) {
         const bool stays = nodes.empty() || wanted == Wanted::Mesh;
@@ -353,10 +352,10 @@ class Reader3ds {
         }
     }
 
-    /// From the positions in the file to the frame of a node.
+    /// The map from the positions in the file to the frame of a node.
     Affine from_world(std::size_t object, std::size_t node) const {
         Affine frame = matrices_[object];
-        // Only the place of such an object is mirrored, not what moves it.
+        // In this case only the placement of the object is mirrored, not its motion.
         if (frame.determinant() < 0) frame.x = -frame.x;
         frame.origin = frame.apply(nodes_[node].pivot);
         if (!std::isnormal(frame.determinant()))
@@ -384,7 +383,7 @@ class Reader3ds {
     Budget budget_{source_};
     SceneFile scene_;
     std::vector<std::string> object_names_; ///< of the shapes
-    std::vector<Affine> matrices_;          ///< likewise
+    std::vector<Affine> matrices_;          ///< of the shapes
     std::vector<Node3ds> nodes_;
     std::vector<std::size_t> places_; ///< of the nodes, in scene_.nodes
     std::map<std::string, std::vector<std::size_t>> nodes_of_objects_;

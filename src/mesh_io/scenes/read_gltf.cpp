@@ -14,7 +14,7 @@ namespace echinus {
 
 namespace {
 
-/// The values of a channel, as many for each key.
+/// The values of a channel, with the same number for each key.
 class Sampler {
   public:
     /// @param name  of the animation, for sentences
@@ -25,7 +25,7 @@ class Sampler {
         if (input_.count() == 0) fail("has a channel without keys");
     }
 
-    /// @param make  of the number of an element of the output
+    /// @param make  returns the value for an element of the output, by its index
     template <typename Value, typename Make>
     void read(std::size_t width, Track<Value>& track, Make&& make) const {
         output_.require_width(width);
@@ -35,7 +35,7 @@ class Sampler {
             track.values.push_back(make(key * values_per_key() + (is_spline_ ? 1 : 0)));
     }
 
-    /// Weights of morphs: as many for each key as there are targets.
+    /// The weights of morph targets: for each key, one for each target.
     void read_weights(Track<std::vector<double>>& track) const {
         output_.require_width(1);
         const std::size_t unit = key_count() * values_per_key();
@@ -89,8 +89,9 @@ void read_channel(const Sampler& sampler, const std::string& path, NodeMotion& m
     if (path == "weights") sampler.read_weights(motion.weights);
 }
 
-/// The animations of a glTF file (glTF 2.0, section 3.11). Of splines the values at the keys are kept.
-/// @param numbers  of the file's nodes in scene.nodes; channels of nodes beyond are left out
+/// The animations of a glTF file (glTF 2.0, section 3.11). For splines, the values at the keys are kept.
+/// @param numbers  the indices of the file's nodes in scene.nodes; channels of nodes outside the scene are
+/// left out
 /// @throws Error InvalidMesh
 std::vector<SceneAnimation> read_gltf_animations(GltfFile& file, const SceneFile& scene,
                                                  const std::vector<std::size_t>& numbers) {
@@ -107,7 +108,7 @@ std::vector<SceneAnimation> read_gltf_animations(GltfFile& file, const SceneFile
             if (number >= samplers.size())
                 channel.fail("refers to sampler " + std::to_string(number) + ", but there are " +
                              std::to_string(samplers.size()));
-            if (!node.exists()) continue; // what an extension moves
+            if (!node.exists()) continue; // its target is defined by an extension
             const GltfValue& moved = file.element("nodes", node);
             if (moved.member("matrix").exists() && path != "weights")
                 moved.fail("is animated and has a matrix; export it with translation, rotation and scale");
@@ -203,7 +204,7 @@ class GltfReader {
     }
 
   private:
-    /// Those of the scene, and after them others, on which skins may hang.
+    /// Places the nodes of the scene, and then others, to which skins may refer.
     void place_nodes() {
         all_nodes_ = file_.root().member("nodes").elements();
         if (all_nodes_.empty()) file_.source().fail(ErrorCode::InvalidMesh, "the file has no nodes");
@@ -233,7 +234,7 @@ class GltfReader {
         return user.natural_number();
     }
 
-    /// Depth first. Not recursive, however deep the tree.
+    /// Goes depth first, without recursion, since the tree may be deep.
     void place_tree(std::size_t root) {
         struct Pending {
             std::size_t node, parent;
@@ -317,7 +318,8 @@ class GltfReader {
     GltfShapes shapes_;
     SceneFile scene_;
     std::vector<GltfValue> all_nodes_; ///< of the file
-    std::vector<std::size_t> numbers_; ///< of the file's nodes, in SceneFile::nodes; kNone of those left out
+    std::vector<std::size_t>
+        numbers_; ///< of the file's nodes, in SceneFile::nodes; kNone for nodes that are left out
     std::vector<std::size_t> file_nodes_;      ///< the inverse of numbers_
     std::size_t scene_size_ = 0;               ///< nodes of the scene that is shown
     std::map<std::size_t, std::size_t> skins_; ///< numbers in SceneFile::skins

@@ -14,9 +14,9 @@ Vec3d absolute(const Vec3d& v) {
     return {std::abs(v.x), std::abs(v.y), std::abs(v.z)};
 }
 
-/// Is `product`, which is a b, the identity but for the rounding of a and b, which files have as floats?
+/// Is `product`, which is a b, the identity up to the rounding of a and b, which files contain as floats?
 bool is_identity_but_for_rounding(const Affine& product, const Affine& a, const Affine& b) {
-    constexpr double kRounding = 0x1p-20; // of a chain of floats of 24 bits each
+    constexpr double kRounding = 0x1p-20; // for a chain of floats with 24 bits each
     const Affine sizes = Affine{absolute(a.x), absolute(a.y), absolute(a.z), absolute(a.origin)} *
                          Affine{absolute(b.x), absolute(b.y), absolute(b.z), absolute(b.origin)};
     const auto near = [](const Vec3d& found, const Vec3d& expected, const Vec3d& size) {
@@ -40,7 +40,7 @@ bool is_identity(const Affine& map) {
     return map.x == identity.x && map.y == identity.y && map.z == identity.z && map.origin == identity.origin;
 }
 
-/// The maps that lead an instance: one for each bone, or only its node's.
+/// The maps that move an instance: one for each bone, or only its node's.
 std::vector<Affine> maps_of(const SceneFile& file, const SceneInstance& instance,
                             const std::vector<Affine>& to_world) {
     if (!instance.skin) return {lead(to_world[instance.node], instance.placement)};
@@ -50,7 +50,7 @@ std::vector<Affine> maps_of(const SceneFile& file, const SceneInstance& instance
     return maps;
 }
 
-/// v + sum of weight displacement.
+/// v + sum of weight * displacement.
 std::vector<Vec3d> morphed(const SceneShape& shape, const std::vector<double>& weights) {
     std::vector<Vec3d> vertices = shape.vertices;
     for (std::size_t target = 0; target < std::min(weights.size(), shape.targets.size()); ++target) {
@@ -81,7 +81,7 @@ void lead_by_bones(const SceneShape& shape, const std::vector<Affine>& maps, con
     }
 }
 
-/// Instances of skins whose bones differ count as turned over when all bones are mirrored.
+/// Instances of skins whose bones differ count as mirrored if all bones mirror them.
 bool is_mirrored(const std::vector<Affine>& maps) {
     return std::all_of(maps.begin(), maps.end(), [](const Affine& map) { return map.determinant() < 0; });
 }
@@ -172,7 +172,7 @@ bool is_sound(const std::vector<double>& weights) {
     return std::all_of(weights.begin(), weights.end(), [](double weight) { return std::isfinite(weight); });
 }
 
-/// @param name  of what the track moves, for sentences
+/// @param name  the name of what the track moves, for sentences
 /// @returns the time of the last key
 template <typename Value>
 double require_sound(const Track<Value>& track, const std::string& name, const MeshSource& source) {
@@ -197,8 +197,8 @@ double last_key(const NodeMotion& motion, const std::string& node, const MeshSou
                      require_sound(motion.weights, "weights of the node " + node, source)});
 }
 
-/// The first key, the key before and after a time, or the last: what to interpolate, and how far.
-/// @pre the track has keys
+/// The keys between which to interpolate at a time, and the share: the first key, the keys before and after
+/// the time, or the last key.
 template <typename Value>
 struct Place {
     Place(const Track<Value>& track, double seconds) {

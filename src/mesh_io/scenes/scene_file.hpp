@@ -53,11 +53,11 @@ struct NodePlacement {
 struct SceneNode {
     std::string name;        ///< for sentences
     std::size_t parent;      ///< before the node in SceneFile::nodes; the node's own number for a root
-    NodePlacement placement; ///< at rest, in the parent; not that of a node with a matrix
+    NodePlacement placement; ///< at rest, in the parent; not used for a node with a matrix
     Affine local;            ///< at rest, in the parent
 };
 
-/// A bone's part in moving a vertex.
+/// A bone's influence on a vertex.
 struct Influence {
     std::uint32_t bone; ///< in SceneSkin::bones
     double weight;
@@ -67,15 +67,15 @@ struct Influence {
 struct SceneShape {
     std::string name; ///< for sentences
     std::vector<Vec3d> vertices;
-    std::vector<std::vector<Vec3d>> targets;  ///< of morphs: [target_count][vertex_count] displacements
-    std::vector<std::uint32_t> corners;       ///< as in PolygonMesh
-    std::vector<std::uint32_t> corner_counts; ///< likewise
+    std::vector<std::vector<Vec3d>> targets; ///< of morph targets: [target_count][vertex_count] displacements
+    std::vector<std::uint32_t> corners;      ///< as in PolygonMesh
+    std::vector<std::uint32_t> corner_counts; ///< as in PolygonMesh
     /// Influences on vertex i: from first_influences[i] to before first_influences[i + 1]; their weights sum
     /// to 1. Empty for a mesh without weights.
     std::vector<std::uint32_t> first_influences;
     std::vector<Influence> influences;
-    std::size_t bone_count = 0;                 ///< that a skin needs
-    std::optional<std::size_t> boneless_vertex; ///< one without influences, as the file numbers it
+    std::size_t bone_count = 0;                 ///< the number of bones that a skin needs
+    std::optional<std::size_t> boneless_vertex; ///< a vertex without influences, by its number in the file
 };
 
 struct Bone {
@@ -87,13 +87,13 @@ struct SceneSkin {
     std::vector<Bone> bones;
 };
 
-/// A shape where a node or a skin has it.
+/// A shape that a node or a skin places.
 struct SceneInstance {
     std::size_t shape;
     std::size_t node;
     Affine placement;                ///< in the node
-    std::optional<std::size_t> skin; ///< leads the shape in the node's place
-    std::vector<double> weights;     ///< [target_count] of morphs, at rest
+    std::optional<std::size_t> skin; ///< moves the shape instead of the node
+    std::vector<double> weights;     ///< [target_count] of the morph targets, at rest
 };
 
 /// Values at times, in seconds.
@@ -103,12 +103,12 @@ struct Track {
     std::vector<Value> values; ///< [times.size()]
 };
 
-/// Tracks without keys leave what the node has at rest.
+/// A track without keys keeps the node's value at rest.
 struct NodeMotion {
     Track<Vec3d> positions;
     Track<Rotation> rotations; ///< of any length but 0
     Track<Vec3d> scales;
-    Track<std::vector<double>> weights; ///< of morphs
+    Track<std::vector<double>> weights; ///< of morph targets
 };
 
 struct SceneAnimation {
@@ -125,47 +125,48 @@ struct SceneFile {
     std::vector<SceneAnimation> animations;
 };
 
-/// Animations and the shapes for their morphs are read only where they are wanted.
+/// Animations and the shapes for their morphs are read only if they are wanted.
 enum class Wanted { Mesh, Animation };
 
 SceneFile read_gltf(const MeshSource& source, Wanted wanted);
 SceneFile read_3ds(const MeshSource& source, Wanted wanted);
-/// By the extension of the source's name.
+/// Chooses the reader by the extension of the source's name.
 SceneFile read_scene_file(const MeshSource& source, Wanted wanted);
 
-/// Where the nodes of a file stand, and how far its morphs have gone.
+/// The poses of a file's nodes, and the weights of its morph targets.
 struct Pose {
     std::vector<Affine> to_world;             ///< [node_count]
     std::vector<std::vector<double>> weights; ///< [instance_count][target_count]
 };
 
-/// @param local  [node_count] where the nodes stand in their parents
+/// @param local  [node_count] the poses of the nodes relative to their parents
 std::vector<Affine> to_world(const SceneFile& file, const std::vector<Affine>& local);
 Pose rest_pose(const SceneFile& file);
 
-/// All vertices in the world, instance after instance: first morphed, then led by the bones that have weight
-/// on them (linear blend skinning), or by the node where there are no bones. A node or a skin that stands
-/// where the mesh was bound to it, but for the rounding of its numbers, leaves the vertices as they are in
-/// the file, so that those at one place stay so.
-/// @throws Error InvalidMesh when a vertex is not finite as a float, or has no bone while others have some
+/// All vertices in the world, instance after instance: first morphed, then moved by the bones that influence
+/// them (linear blend skinning), or by the node if there are no bones. A node or a skin in the pose in which
+/// the mesh was bound to it, up to rounding, leaves the vertices as they are in the file, so that coincident
+/// vertices remain coincident.
+/// @throws Error InvalidMesh if a vertex is not finite as a float, or has no bone although others have
 std::vector<Vec3d> vertices_in(const SceneFile& file, const Pose& pose, const MeshSource& source);
 
-/// The polygons of all instances in one mesh, as the file is at rest. Those that are mirrored are turned
+/// The polygons of all instances, in the rest pose of the file, as one mesh. Mirrored instances are turned
 /// over (glTF 2.0, section 3.7.4).
 /// @throws Error InvalidMesh as vertices_in()
 PolygonMesh join(const SceneFile& file, const MeshSource& source);
 
-/// The animation with this name, or the only one when the name is empty.
-/// @throws Error InvalidMesh when there is none of this name, or several and no name
+/// The animation with this name, or the only one if the name is empty.
+/// @throws Error InvalidMesh if no animation has this name, or if the name is empty and the number of
+/// animations is not one
 const SceneAnimation& choose_animation(const SceneFile& file, std::string_view name,
                                        const MeshSource& source);
 
 /// How an animation moves the nodes of a file. Between two keys, positions, scales and the weights of morph
-/// targets go evenly, and rotations about one axis, the shorter way round; before the first key and after the
-/// last they rest. The handles of splines are not used.
+/// targets are interpolated linearly, and rotations about one axis, the shorter way round; before the first
+/// key and after the last, they are constant. The handles of splines are not used.
 class NodeAnimation {
   public:
-    /// @throws Error InvalidMesh when keys are out of order or a number is not finite
+    /// @throws Error InvalidMesh if keys are out of order or a number is not finite
     NodeAnimation(const SceneFile& file, const SceneAnimation& animation, const MeshSource& source);
 
     double seconds() const { return seconds_; } ///< of the last key
