@@ -14,7 +14,7 @@ namespace echinus::render {
 namespace {
 
 void require_range(double value, double low, double high, const char* name) {
-    if (value >= low && value <= high) return; // false for NaN too
+    if (value >= low && value <= high) return; // false for NaN, too
     std::ostringstream sentence;
     sentence << "View: " << name << " is " << value << ", but must lie in [" << low << ", " << high << "]";
     throw Error(ErrorCode::InvalidOptions, sentence.str());
@@ -40,7 +40,8 @@ Vec3d unit(const Vec3d& v) {
     return v * (1 / length(v));
 }
 
-/// The axis from which azimuths count: the one that follows the largest part of `up` in the order x, y, z, x.
+/// The axis from which azimuths are measured: the one that follows the largest part of `up` in the order x,
+/// y, z, x.
 Vec3d azimuth_axis(const Vec3d& up) {
     const Vec3d size{std::abs(up.x), std::abs(up.y), std::abs(up.z)};
     if (size.z >= size.x && size.z >= size.y) return {1, 0, 0};
@@ -76,7 +77,7 @@ class WedgeFit {
     }
     /// The largest z0 for which the wedge contains all points.
     double nearest_apex_z() const { return -(high_ + low_) / (tan_high_ + tan_low_); }
-    /// For a z0 no larger than that, the middle of the x0 for which the wedge contains all points.
+    /// For a z0 no larger than that, the midpoint of the range of x0 for which the wedge contains all points.
     double apex_x(double z0) const { return (high_ - low_ + (tan_high_ - tan_low_) * z0) / 2; }
 
   private:

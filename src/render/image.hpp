@@ -8,7 +8,7 @@
 
 namespace echinus::render {
 
-/// Linear light (Rec. 709 primaries, as sRGB) of a colour.
+/// The linear light of a colour (Rec. 709 primaries, as in sRGB).
 Vec3f to_linear(const Colour& colour);
 
 /// The nearest 8-bit sRGB values of linear light, clamped to [0, 1].
@@ -25,10 +25,10 @@ std::string size_text(std::uint64_t width, std::uint64_t height);
 /// @throws Error InvalidOptions for a size outside the limits of RenderOptions
 void require_drawable(std::uint64_t width, std::uint64_t height);
 
-/// @throws Error InvalidOptions when the picture is empty or its size is not that of its data
+/// @throws Error InvalidOptions if the picture is empty or its size does not match its data
 void require_consistent(const Image& image);
 
-/// A place on a picture, in pixels from its upper left corner.
+/// A position on a picture, in pixels from its upper left corner.
 struct PagePoint {
     double x = 0, y = 0;
 };

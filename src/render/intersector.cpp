@@ -45,13 +45,13 @@ void copy_buffer(RTCDevice device, RTCGeometry geometry, RTCBufferType type, RTC
 
 /// Embree requires the masks of its packets to be aligned to the packet's width.
 struct alignas(64) ValidMask {
-    std::array<int, Intersector::kPacketSize> lanes{}; // -1: trace, 0: leave alone
+    std::array<int, Intersector::kPacketSize> lanes{}; // -1: trace, 0: skip
 };
 
 ValidMask fill(std::span<const Ray> rays, RTCRay16& packet) {
     ValidMask valid;
-    // Where Embree has no packets of 16, as without AVX-512, it does not look at the mask: a ray whose end
-    // lies before its beginning is left alone there (seen in Embree 3.12).
+    // If Embree has no packets of 16, for instance without AVX-512, it ignores the mask, but skips a ray
+    // whose end is before its beginning (observed in Embree 3.12).
     std::fill(std::begin(packet.tnear), std::end(packet.tnear), 0.0F);
     std::fill(std::begin(packet.tfar), std::end(packet.tfar), -std::numeric_limits<float>::infinity());
     for (std::size_t i = 0; i < rays.size(); ++i) {
@@ -89,8 +89,8 @@ Intersector::Intersector(const TriangleMesh& mesh) : impl_(std::make_unique<Impl
     copy_buffer(device, geometry.get(), RTC_BUFFER_TYPE_INDEX, RTC_FORMAT_UINT3, mesh.faces);
     rtcCommitGeometry(geometry.get());
     rtcAttachGeometry(impl_->scene.get(), geometry.get());
-    // On one thread: which of two faces a ray through their common edge hits depends on the shape of the
-    // tree, which is random with several threads. (Embree's own "threads=1" would bind the whole process.)
+    // On one thread, because the shape of the tree decides which of two faces a ray through their common edge
+    // hits, and is random with several threads. (Embree's own "threads=1" would bind the whole process.)
     tbb::task_arena(1).execute([&] { rtcCommitScene(impl_->scene.get()); });
     require_success(device, "build its tree");
 }

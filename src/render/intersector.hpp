@@ -11,7 +11,7 @@ namespace echinus::render {
 
 struct Ray {
     Vec3f origin;
-    Vec3f direction; ///< need not be unit
+    Vec3f direction; ///< need not have unit length
 };
 
 /// A ray's first hit on a mesh.
@@ -26,10 +26,10 @@ struct RayHit {
 };
 
 /// Embree's tree over one mesh: finds the nearest hit, or whether there is any. Watertight at shared edges.
-/// The same answers on every run and for every number of threads; thread-safe.
+/// Gives the same answers on every run and for every number of threads; thread-safe.
 class Intersector {
   public:
-    /// @throws Error InvalidOptions when Embree cannot start or has no memory
+    /// @throws Error InvalidOptions if Embree cannot start or has no memory
     explicit Intersector(const TriangleMesh& mesh);
     ~Intersector();
     Intersector(const Intersector&) = delete;
@@ -42,7 +42,7 @@ class Intersector {
     /// @param hits  [n] out
     void first_hits(std::span<const Ray> rays, std::span<RayHit> hits) const noexcept;
 
-    /// Does anything lie on the rays beyond their origins?
+    /// Does a ray hit anything beyond its origin?
     /// @param rays  [n], n <= kPacketSize
     /// @return bit i set: ray i is blocked
     std::uint32_t blocked(std::span<const Ray> rays) const noexcept;

@@ -84,7 +84,7 @@ Sample2 SampleTables::sample(std::uint32_t sample, SampleUse use, std::uint32_t 
 
 namespace {
 
-constexpr double kLampAzimuthDeg = 54;   // to the left of the camera, as seen from the objects
+constexpr double kLampAzimuthDeg = 54;   // to the left of the camera, seen from the objects
 constexpr double kLampElevationDeg = 50; // shadows stay short and fall to the right
 constexpr float kLampRadius = 0.13F;     // tangent of the half angle: 7.4 degrees
 constexpr Vec3f kLampRadiance{0.87F, 0.85F, 0.81F};
@@ -114,15 +114,16 @@ Sample2 to_disc(const Sample2& sample) {
     const bool wide = std::abs(a) > std::abs(b);
     const float radius = wide ? a : b;
     const float angle = std::numbers::pi_v<float> / 4 * (wide ? b / a : a / b);
-    // Taylor series suffice within an eighth of a turn (4e-6) at a fifth of the cost of std::sin and
-    // std::cos, which a picture would call tens of millions of times.
+    // Taylor series suffice within an eighth of a turn (error 4e-6), at a fifth of the cost of std::sin and
+    // std::cos, which would be called tens of millions of times per picture.
     const float square = angle * angle;
     const float cosine = 1 - square * (1 - square * (1 - square / 30) / 12) / 2;
     const float sine = angle * (1 - square * (1 - square * (1 - square / 42) / 20) / 6);
     return wide ? Sample2{radius * cosine, radius * sine} : Sample2{radius * sine, radius * cosine};
 }
 
-/// Towards the lamp's middle: fixed relative to the camera's level direction, so that every view is well lit.
+/// The direction towards the middle of the lamp, which is fixed relative to the camera's horizontal
+/// direction, so that every view is well lit.
 Vec3f lamp_middle(const Camera& camera) {
     constexpr double kDegree = std::numbers::pi / 180;
     const Vec3d towards_camera = cross(camera.right, camera.world_up);

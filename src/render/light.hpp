@@ -16,8 +16,8 @@ enum class SampleUse : std::uint32_t { Pixel, Lamp, Sky };
 
 /// Evenly spread points of the unit square for the samples of every pixel: Owen-scrambled Sobol sequences
 /// (Burley, "Practical Hash-based Owen Scrambling", JCGT 9(4), 2020), in which any aligned run of 2^k points
-/// lies as evenly as points can. A few sequences are tabulated; each pixel takes one of them and flips its
-/// digits by the pixel's own pattern, which preserves the even distribution at almost no cost.
+/// is as evenly distributed as possible. A few sequences are tabulated; each pixel takes one of them and
+/// flips its digits by a pattern of its own, which preserves the even distribution at almost no cost.
 class SampleTables {
   public:
     explicit SampleTables(std::uint32_t sample_count);
@@ -35,7 +35,7 @@ class SampleTables {
     std::vector<Bits2> points_; ///< [kTableCount][sample_count]
 };
 
-/// A vector other than 0, made a unit long.
+/// A nonzero vector, scaled to unit length.
 inline Vec3f unit_of(const Vec3f& v) {
     return v * (1 / length(v));
 }
@@ -46,11 +46,11 @@ class StudioLight {
   public:
     explicit StudioLight(const Camera& camera);
 
-    /// Towards a point of the lamp.
+    /// The direction towards a point of the lamp.
     Vec3f lamp_direction(const Sample2& sample) const;
     /// Light from the unshaded lamp on a surface, per albedo.
     Vec3f lamp_irradiance(const Vec3f& normal) const;
-    /// Light that comes in along a direction, from the sky or from the floor.
+    /// The light that arrives from a direction, from the sky or from the floor.
     Vec3f ambient_radiance(const Vec3f& direction) const;
 
     const Vec3f& up() const { return up_; }

@@ -33,7 +33,7 @@ RenderedObject map_object(const MapSurface& surface) {
     RenderedObject object;
     object.mesh = surface.mesh;
     object.back_colour = palette::kLayerBack;
-    object.crease_angle_deg = 60; // the map's surface is uneven between samples where the model is smooth
+    object.crease_angle_deg = 60; // the map's surface is uneven between samples even if the model is smooth
     for (std::uint32_t layer : surface.layer) object.face_colours.push_back(layer_colour(layer));
     return object;
 }
@@ -104,7 +104,7 @@ Image draw_figure(const TriangleMesh& model, MapPicture map, const View& view, c
     const double aspect = static_cast<double>(left.width) / left.height;
     const std::span<const RenderedObject> model_alone(&objects[0], 1);
     Camera camera = camera_for(objects, roomy_view, aspect);
-    // The model must not hang in the air where the map reaches below it.
+    // The model must not float above the floor if the map extends below the model.
     camera.floor_height = camera_for(model_alone, roomy_view, aspect).floor_height;
 
     std::array pictures{render(model_alone, camera, left),

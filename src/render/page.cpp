@@ -36,18 +36,16 @@ inline constexpr float kStrokeWidth = 1.15F;
 
 using Point = std::array<float, 2>;
 
-/// A letter as it is drawn by hand. A path is a row of commands, each followed by numbers:
-///   M x y      lift the pen and go to (x, y)
-///   L x y      line
-///   V x y      quarter of an ellipse that leaves vertically and arrives horizontally
-///   H x y      quarter of an ellipse that leaves horizontally and arrives vertically
-///   Q c d x y  quadratic curve with the control point (c, d)
+/// A letter as it is drawn by hand. A path is a sequence of commands, each followed by numbers: M x y
+///   lift the pen and go to (x, y) L x y      line V x y      quarter of an ellipse that leaves vertically
+///   and arrives horizontally H x y      quarter of an ellipse that leaves horizontally and arrives
+///   vertically Q c d x y  quadratic curve with the control point (c, d)
 struct GlyphPath {
     float width;
     const char* path;
 };
 
-/// A plain upright lettering with round strokes, as on technical drawings; from ' ' to '~'.
+/// Plain upright letters with round strokes, as on technical drawings, from ' ' to '~'.
 constexpr GlyphPath kPaths[] = {
     {1.6F, ""},
     {0.0F, "M0 10 L0 3.2 M0 .2 L0 .3"},
@@ -156,7 +154,7 @@ static_assert(kFirst + kGlyphCount - 1 == '~');
 
 constexpr int kCurvePieces = 8;
 
-/// Follows a path and keeps the strokes that the pen draws.
+/// Follows a path and records the strokes that the pen draws.
 class Pen {
   public:
     explicit Pen(std::vector<Stroke>& strokes) : strokes_(strokes) {}
@@ -244,7 +242,7 @@ double distance_to_nearest(std::span<const PageStroke> strokes, double x, double
     return distance;
 }
 
-/// Blends in a colour. In sRGB, not in linear light, which would make dark letters on a pale page thinner.
+/// Blends in a colour, in sRGB: linear light would make dark letters on a pale page look thinner.
 void mix_in(std::uint8_t* rgb, const Colour& colour, double share) {
     const float parts[] = {colour.red, colour.green, colour.blue};
     for (std::size_t k = 0; k < 3; ++k) {

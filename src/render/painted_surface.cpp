@@ -71,7 +71,7 @@ std::vector<CornerNormals> corner_normals(const TriangleMesh& mesh, double creas
 
     std::vector<CornerNormals> result(mesh.faces.size());
     for (std::uint32_t corner = 0; corner < weighted.size(); ++corner) {
-        Vec3d sum = normals[corner / 3] * 1e-6; // gives a direction even where all others cancel out
+        Vec3d sum = normals[corner / 3] * 1e-6; // gives a direction even if all others cancel out
         for (std::uint32_t other : around.at(mesh.faces[corner / 3][corner % 3])) {
             if (dot(normals[other / 3], normals[corner / 3]) >= cos_crease) sum += weighted[other];
         }
@@ -92,7 +92,7 @@ UnitMesh to_unit_frame(const TriangleMesh& mesh, const UnitFrame& frame) {
     UnitMesh result;
     result.mesh.vertices.reserve(mesh.vertices.size());
     for (const Vec3f& vertex : mesh.vertices) {
-        // A vertex that no face uses may be anything; it must not enter Embree's bounds.
+        // A vertex that no face uses may be anywhere; it must not extend Embree's bounds.
         const Vec3d moved = frame.to_unit(Vec3d(vertex));
         result.mesh.vertices.push_back(length(moved) <= 2 ? Vec3f(moved) : Vec3f{});
     }
@@ -123,7 +123,7 @@ void require_options(const RenderedObject& object, const std::string& name) {
     }
 }
 
-/// The colours of an object's faces, of their fronts and backs.
+/// The colours of the fronts and backs of an object's faces.
 std::pair<std::vector<Colour>, std::vector<Colour>> colours_of(const RenderedObject& object) {
     std::vector<Colour> fronts = object.face_colours;
     fronts.resize(object.mesh.faces.size(), object.colour);

@@ -19,7 +19,7 @@ using CornerNormals = std::array<Vec3f, 3>;
 /// @pre indices are in range, coordinates finite and of moderate size
 std::vector<CornerNormals> corner_normals(const TriangleMesh& mesh, double crease_angle_deg);
 
-/// Unit normal of one face, in double; (0, 0, 0) when it has no area.
+/// Unit normal of one face, in double; (0, 0, 0) if it has no area.
 Vec3d face_normal(const TriangleMesh& mesh, const Triangle& face);
 
 /// A similarity from the objects' frame to one in which the drawing fills the unit sphere about the origin,
@@ -31,7 +31,7 @@ struct UnitFrame {
     Vec3d to_unit(const Vec3d& point) const { return (point - centre) * scale; }
 };
 
-/// All objects as one triangle soup in the unit frame, with the data that shade it.
+/// All objects as one triangle soup in the unit frame, with the data for shading.
 struct PaintedSurface {
     TriangleMesh mesh;
     std::vector<CornerNormals> normals;     ///< [face_count]
@@ -44,7 +44,7 @@ struct PaintedSurface {
 /// @throws Error as render()
 PaintedSurface paint(std::span<const RenderedObject> objects);
 
-/// Positions of all vertices that faces use, object after object.
+/// Positions of all vertices that faces use, one object after the other.
 /// @throws Error InvalidMesh as inspect() does
 std::vector<Vec3f> used_points(std::span<const RenderedObject> objects);
 

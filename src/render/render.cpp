@@ -22,7 +22,7 @@ class Lens {
   public:
     Lens(const Camera& camera, const UnitFrame& frame, std::uint32_t width, std::uint32_t height);
 
-    /// Through a point of the picture, in pixels from its upper left corner.
+    /// The ray through a point of the picture, in pixels from its upper left corner.
     Ray ray_through(float x, float y) const;
     /// Width of a pixel at distance 1 along the direction of view.
     float pixel_size() const { return pixel_size_; }
@@ -42,7 +42,7 @@ class Tracer {
     Vec3f pixel(std::uint32_t x, std::uint32_t y) const;
 
   private:
-    /// A place seen through a pixel: the light that it sends regardless of its surroundings, and the light
+    /// A point seen through a pixel: the light that it sends regardless of its surroundings, and the light
     /// that the lamp and one direction of the surroundings add if nothing blocks them.
     struct Place {
         Vec3f base, lamp_gain, sky_gain;
@@ -79,9 +79,9 @@ class Tracer {
     std::uint32_t width_, height_;
 };
 
-/// Becomes palette::kPage after the compression of highlights.
+/// This colour becomes palette::kPage when highlights are compressed.
 constexpr Colour kBackdrop = Colour::from_hex(0xFEFDFB);
-/// The darkness of a place on the floor that no light reaches: 1 would be black.
+/// The darkness of a point on the floor that no light reaches; 1 would be black.
 constexpr float kShadowStrength = 0.66F;
 /// Light from a direction blocked by another part of the drawing, as a share of the light that the open
 /// direction would send, times that part's albedo, which is assumed to be the point's own.
@@ -101,8 +101,8 @@ float grey(const Vec3f& light) {
     return (light.x + light.y + light.z) / 3;
 }
 
-/// Everything drawn lies within the unit sphere; most rays from the floor miss it and need no Embree. The
-/// sphere here is a little larger, to allow for rounding.
+/// Everything drawn is within the unit sphere; most rays from the floor miss it and need no query of Embree.
+/// The sphere tested is slightly larger, to allow for rounding.
 bool meets_unit_sphere(const Ray& ray) {
     constexpr float kRadiusSq = 1.0001F;
     const float distance_sq = dot(ray.origin, ray.origin);
@@ -129,7 +129,7 @@ Vec3f lift_to_smooth_surface(const Vec3f& point, const std::array<Vec3f, 3>& cor
     return point + blend(lifts, hit);
 }
 
-/// Rays to one light from the places seen through one pixel, and the light that each unblocked ray adds.
+/// The rays to one light from the points seen through one pixel, and the light that each unblocked ray adds.
 class LightRays {
   public:
     void add(const Ray& ray, const Vec3f& gain) {
@@ -185,7 +185,7 @@ Vec3f Tracer::pixel(std::uint32_t x, std::uint32_t y) const {
     for (std::uint32_t first = 0; first < sample_count_; first += Intersector::kPacketSize) {
         const std::size_t count = std::min<std::size_t>(Intersector::kPacketSize, sample_count_ - first);
         const Seen seen = packet(x, y, first, count);
-        // Most pixels of most pictures: there is nothing more to compute.
+        // This is the case for most pixels of most pictures, and nothing more has to be computed.
         if (first == 0 && count == Intersector::kPacketSize && seen.only_open_floor) return backdrop_;
         sum += seen.light;
     }
