@@ -26,9 +26,9 @@ struct Collision {
           velocities(positions.size()) {}
 
     Kind kind;
-    std::vector<Vec3f> positions;  ///< by the other solver, then corrected
-    std::vector<Vec3f> previous;   ///< where the step began
-    std::vector<Vec3f> velocities; ///< of those that were corrected
+    std::vector<Vec3f> positions;  ///< as the other solver set them, then corrected
+    std::vector<Vec3f> previous;   ///< the positions at the beginning of the step
+    std::vector<Vec3f> velocities; ///< of the particles that were corrected
     std::span<const std::uint32_t> corrected{};
 };
 
@@ -37,7 +37,7 @@ bool has_exploded(const Vec3f& p) {
     return !(std::fabs(p.x) <= kFarthest && std::fabs(p.y) <= kFarthest && std::fabs(p.z) <= kFarthest);
 }
 
-/// A particle that has exploded goes on from where it was.
+/// A particle that has exploded continues from its previous position.
 void correct(Collision& collision, double seconds) {
     auto& [kind, positions, previous, velocities, corrected] = collision;
     for (std::size_t i = 0; i < positions.size(); ++i)
@@ -114,7 +114,7 @@ double wasm_collision_unresolved_count(const Collision* collision) {
     return surfaces != nullptr ? static_cast<double>(surfaces->unresolved_count()) : 0;
 }
 
-/// The function that gives back what memalign() took.
+/// The function that frees memory from memalign().
 ECHINUS_EXPORT(wasm_free) void (*wasm_free())(void*) {
     return std::free;
 }

@@ -7,16 +7,17 @@
 #include <memory>
 #include <vector>
 
-/// The module exports the functions of echinus.h that js/ calls, and those below this folder for what C does
-/// not have: files in memory, scenes in parts, and the insides of maps. They follow the rules of echinus.h,
-/// but texts and JSON are arrays of bytes.
+/// The module exports the functions of echinus.h that js/ calls, and those in this folder for what the C
+/// interface lacks: files in memory, scenes in parts, and the insides of maps. They follow the rules of
+/// echinus.h, but texts and JSON are arrays of bytes.
 #define ECHINUS_EXPORT(NAME) extern "C" __attribute__((export_name(#NAME)))
 
 namespace echinus::wasm {
 
 using namespace echinus::c;
 
-/// Lists of numbers, each behind its length, in the order in which js/ takes them; texts are lists of bytes.
+/// Lists of numbers, each preceded by its length, in the order in which js/ takes them; texts are lists of
+/// bytes.
 class Lists {
   public:
     void add(const auto& list) {
@@ -29,7 +30,7 @@ class Lists {
     std::vector<double> numbers_;
 };
 
-/// Puts arrays into their places: all, or none.
+/// Stores all of these arrays, or none.
 inline void put_arrays(std::initializer_list<echinus_array**> places,
                        std::initializer_list<echinus_array> arrays) {
     std::vector<std::unique_ptr<echinus_array>> made;

@@ -51,7 +51,7 @@ Vec3d unit_direction(double x, double y, double z) {
     return direction * (1 / size);
 }
 
-/// Intervals of a ray on each of which the answer does not change: from, to, inside, certain.
+/// Adds an interval of a ray on which the answer does not change: from, to, inside, certain.
 void add_interval(std::vector<double>& intervals, double from, double to, bool inside, bool certain = true) {
     intervals.insert(intervals.end(), {from, to, inside ? 1.0 : 0.0, certain ? 1.0 : 0.0});
 }
@@ -62,7 +62,7 @@ std::vector<double> crossings_of(const ExactMapView& map, const BandRange& bands
     for (std::uint32_t band = bands.first; band < bands.last; ++band)
         for (std::uint32_t r = map.bands[band].first_reference; r < map.bands[band + 1].first_reference; ++r)
             faces.push_back(map.references[r]);
-    std::sort(faces.begin(), faces.end()); // a face is listed by each of the bands that it passes through
+    std::sort(faces.begin(), faces.end()); // a face is in the list of each band through which it passes
     faces.erase(std::unique(faces.begin(), faces.end()), faces.end());
     const double unit = length(Vec3d(along)) * frame_of(map).step;
     std::vector<double> distances;
@@ -75,7 +75,7 @@ std::vector<double> crossings_of(const ExactMapView& map, const BandRange& bands
     return distances;
 }
 
-/// Of each band: from, to, its faces, and the winding number towards the centre, NaN where it is not unique.
+/// For each band: from, to, its faces, and the winding number towards the centre, NaN where it is not unique.
 std::vector<double> bands_along(const ExactMapView& map, const BandRange& bands, double length_per_unit) {
     std::vector<double> result;
     for (std::uint32_t band = bands.first; band < bands.last; ++band) {
@@ -106,7 +106,7 @@ std::vector<double> intervals_along(const ExactMapView& map, const std::vector<d
     return result;
 }
 
-/// Unit vectors to the three corners of a cell, after those that are there.
+/// Appends the unit vectors to the three corners of a cell.
 template <typename T>
 void add_corners(const OctahedralCells& cells, std::uint32_t cell, std::vector<T>& corners) {
     for (const Vec3d& corner : cells.corners(cell)) {
@@ -163,8 +163,9 @@ void look_along(const DistanceMapView& map, const Vec3d& unit, Lists& lists) {
 // ---- Cells
 
 struct Cells {
-    std::vector<std::uint32_t> band_counts, face_counts; ///< [cell_count] bands, and faces in all their lists
-    std::vector<float> corners;                          ///< [9 cell_count] unit vectors
+    std::vector<std::uint32_t> band_counts,
+        face_counts;            ///< [cell_count] the number of bands, and of faces in all of their lists
+    std::vector<float> corners; ///< [9 cell_count] unit vectors
 };
 
 Cells cells_of(const ExactMapView& map) {
@@ -182,7 +183,7 @@ Cells cells_of(const ExactMapView& map) {
 
 } // namespace
 
-/// The layout of a map, as far as echinus_map_describe() and the statistics leave it out.
+/// Those parts of a map's layout that echinus_map_describe() and the statistics do not contain.
 ECHINUS_EXPORT(wasm_map_layout)
 echinus_status wasm_map_layout(const echinus_map* map, echinus_array** layout) {
     return make(__func__, layout, [&] {

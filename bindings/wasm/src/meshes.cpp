@@ -1,4 +1,4 @@
-// Meshes of polygons and of files in memory, and all faults of a mesh.
+// Meshes from polygons and from files in memory, and all faults of a mesh.
 
 #include "interface.hpp"
 #include "mesh/faces.hpp"
@@ -47,7 +47,7 @@ void require_corners(const PolygonMesh& polygons) {
                                                     std::to_string(polygons.vertices.size()) + " vertices");
 }
 
-/// Every fault of a mesh and its place, for drawing.
+/// Every fault of a mesh with its place, for drawing.
 struct Faults {
     std::vector<std::uint32_t> border, nonmanifold, misoriented; ///< two vertices of each edge
     std::vector<std::uint32_t> duplicate, degenerate;            ///< faces
@@ -85,7 +85,7 @@ echinus_status wasm_mesh_from_polygons(const float* vertices, std::uint32_t vert
                                    {corner_counts, corner_counts + polygon_count}};
         require_corners(polygons);
         TriangleMesh mesh = triangulate(polygons, {"the polygons", {}});
-        move_to_origin({}, mesh); // floats are what they are
+        move_to_origin({}, mesh); // no origin: the caller's coordinates are floats already
         require_valid(mesh);
         return mesh;
     });

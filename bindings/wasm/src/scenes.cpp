@@ -14,19 +14,20 @@ namespace echinus::wasm {
 
 namespace {
 
-/// Empty for a generated shape.
+/// The name of a model's file; empty for a generated shape.
 std::string_view file_of(const SceneModel& model) {
     const auto* file = std::get_if<ModelFile>(&model);
     return file != nullptr ? file->name : std::string_view{};
 }
 
-/// NaN for a mesh, whose vertices may be known to the caller only, and beside bodies.
+/// The number of particles of a sheet; NaN for a mesh, whose vertices may be known only to the caller, and if
+/// there are bodies.
 double particle_count(const Scene& scene) {
     if (scene.mesh_cloth || !scene.bodies.empty()) return std::numeric_limits<double>::quiet_NaN();
     return scene.cloth.column_count * scene.cloth.row_count;
 }
 
-/// Numbers, the files of the model, of the cloth and of its shape at rest, and a word for each repair.
+/// Numbers; the files of the model, of the cloth and of its shape at rest, and a word for each repair.
 Lists describe(const Scene& scene) {
     Lists lists;
     lists.add(std::initializer_list<double>{static_cast<double>(scene.frame_limit),
@@ -57,7 +58,7 @@ TriangleMesh make_model(const Scene& scene) {
 }
 
 std::vector<ColliderMap> maps_at(const echinus_map* const* maps, std::uint32_t count) {
-    std::vector<ColliderMap> copies; // they share the arrays
+    std::vector<ColliderMap> copies; // copies share the arrays of a map
     for (const echinus_map* map : values_at(maps, count, "maps")) copies.push_back(map->value);
     return copies;
 }
@@ -74,8 +75,8 @@ ClothMeshes meshes_at(const Scene& scene, const echinus_mesh* cloth, const echin
     return meshes;
 }
 
-/// The present colliders, with those that the scene has more of; without those that it has no longer.
-/// @param maps  of all of the scene's colliders, or none, to keep the present ones
+/// The present colliders without those that the scene no longer has, and with those that it has in addition.
+/// @param maps  of all of the scene's colliders, or empty to keep the present ones
 std::vector<Collider> colliders_after(const Simulation& simulation, const Scene& scene,
                                       const std::vector<ColliderMap>& maps) {
     std::vector<Collider> colliders = simulation.colliders();
@@ -94,7 +95,8 @@ std::vector<Collider> colliders_after(const Simulation& simulation, const Scene&
     return colliders;
 }
 
-/// The scene's options, with the particles and the colliders of a simulation in their present state.
+/// A simulation with the scene's options, and with the particles and the colliders of another simulation in
+/// their present state.
 Simulation continue_with(const Simulation& simulation, const Scene& scene,
                          const std::vector<ColliderMap>& maps) {
     SimulationOptions options = scene.simulation;
@@ -126,7 +128,7 @@ echinus_status wasm_scene_build_map(const echinus_scene* scene, const echinus_me
 }
 
 /// @param maps         of the scene's colliders, in their order
-/// @param cloth, rest  meshes of a cloth that is made of files, or null
+/// @param cloth, rest  the meshes of a cloth from files, or null
 /// @param bodies       surfaces of the bodies, each null for a generated shape
 ECHINUS_EXPORT(wasm_scene_make_simulation)
 echinus_status wasm_scene_make_simulation(const echinus_scene* scene, const echinus_map* const* maps,
