@@ -59,14 +59,14 @@ class NewtonSolver : public Solver {
     Motion motion_;
     std::vector<std::uint8_t> is_held_;
     std::vector<Vec3d> accelerations_; ///< [particle] by gravity and wind
-    std::vector<Vec3d>
-        gained_; ///< [particle] the acceleration of the last step, after contacts; for the guess of the next
+    /// [particle] the acceleration of the last step, after contacts; for the guess of the next.
+    std::vector<Vec3d> gained_;
     std::vector<Deformation> deformations_; ///< [collider] in this frame
-    std::vector<std::uint8_t>
-        is_near_; ///< [collider] 1 for colliders that may carry particles in this frame, or hold them
-    std::vector<std::uint8_t>
-        may_touch_;             ///< [particle] 1 for particles that may touch something in this frame
-    std::uint8_t was_part_ = 0; ///< whether the last step was only a part of a frame
+    /// [collider] 1 for colliders that may carry particles in this frame, or hold them.
+    std::vector<std::uint8_t> is_near_;
+    /// [particle] 1 for particles that may touch something in this frame.
+    std::vector<std::uint8_t> may_touch_;
+    std::uint8_t was_part_ = 0;          ///< whether the last step was only a part of a frame
     std::vector<std::uint32_t> held_by_; ///< [particle] the collider to which it is attached, or kNoObstacle
     /// [particle] The positions to which held particles are led, at the beginning and at the end of a step;
     /// contact may keep them from there.

@@ -42,8 +42,8 @@ class RestWatch {
     }
 
     RestCondition condition_;
-    std::vector<Vec3f>
-        places_; ///< positions near which all particles have stayed for at least quiet_frame_count_ frames
+    /// Positions near which all particles have stayed for at least quiet_frame_count_ frames.
+    std::vector<Vec3f> places_;
     std::uint32_t quiet_frame_count_ = 0;
 };
 

@@ -40,8 +40,8 @@ class Multigrid {
         std::vector<std::uint32_t> first_local;           ///< [fine node + 1]
         std::vector<std::uint32_t> locals;                ///< coarse nodes
         std::vector<std::uint32_t> first_target, targets; ///< [parent, local] the block of the product
-        std::vector<std::vector<std::uint32_t>>
-            fine_of_piece; ///< [piece of coarse rows] the fine nodes that add to it
+        /// [piece of coarse rows] the fine nodes that add to it.
+        std::vector<std::vector<std::uint32_t>> fine_of_piece;
     };
     struct Level {
         BlockMatrix own;   ///< not on the first level

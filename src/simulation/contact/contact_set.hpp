@@ -125,8 +125,8 @@ class ContactSet : public ContactEnergy {
         double push = 0, force = 0, weight = 0;
     };
     struct Impulse {
-        Vec3d linear,
-            angular; ///< the moment is about the position of the collider at the end of the frame's last step
+        /// The moment is about the position of the collider at the end of the frame's last step.
+        Vec3d linear, angular;
     };
 
     static double push_of(const Held& contact, double gap);
@@ -148,8 +148,8 @@ class ContactSet : public ContactEnergy {
     std::size_t obstacle_count_;
     std::vector<Held> contacts_;
     std::vector<Bristle> bristles_; ///< of the step before, by key
-    std::vector<std::uint32_t>
-        first_bristle_;                      ///< [particle count + 1] those whose first point is the particle
+    /// [particle count + 1] those whose first point is the particle.
+    std::vector<std::uint32_t> first_bristle_;
     std::vector<std::uint32_t> first_patch_; ///< [particle] an index into patches_
     std::vector<Patch> patches_;             ///< in this step
     std::vector<double> free_masses_;        ///< [obstacle] empty if there are no free bodies

@@ -56,8 +56,8 @@ class PairSet {
     /// the ends of two displacements from there.
     struct Course {
         const PointArrays &listed, &now, &base, &goal;
-        std::span<const float> strayed,
-            ahead; ///< [vertex] the most that it has moved since then, and that both displacements lead it
+        /// [vertex] the most that it has moved since then, and that both displacements lead it.
+        std::span<const float> strayed, ahead;
     };
     /// Measures the pairs that may be nearer than `near`, and those whose gaps the displacements may close by
     /// half.

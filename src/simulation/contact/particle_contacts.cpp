@@ -162,8 +162,8 @@ bool ParticleContacts::put_outside(std::span<Vec3d> places, std::span<std::uint8
 void ParticleContacts::end_step(const std::vector<Collider>& after, Places places,
                                 std::span<Vec3d> velocities, double step) {
     for (std::size_t o = 0; o < obstacles_.size(); ++o) after_[o] = after[obstacles_[o].number];
-    for (auto put = put_.rbegin(); put != put_.rend();
-         ++put) // backwards, so that the first entry of a particle decides
+    // Backwards, so that the first entry of a particle decides.
+    for (auto put = put_.rbegin(); put != put_.rend(); ++put)
         velocities[put->particle] = (put->from - start_[put->particle]) * (1 / step);
     for (const Inside& inside : began_inside_) keep_with_surface(inside, places, velocities);
     for (const Put& put : put_) {

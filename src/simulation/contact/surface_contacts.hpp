@@ -175,8 +175,8 @@ class SurfaceContacts {
     std::vector<Vec3d> safe_places_;        ///< the same in double precision
     std::vector<Vec3d> goals_;              ///< of the last advance()
     std::vector<std::uint8_t> is_touching_; ///< [particle] in this step
-    std::vector<std::uint32_t>
-        stopped_by_; ///< [particle] the side that stopped it in the last advance(), or kNoObstacle
+    /// [particle] the side that stopped it in the last advance(), or kNoObstacle.
+    std::vector<std::uint32_t> stopped_by_;
 };
 
 } // namespace echinus

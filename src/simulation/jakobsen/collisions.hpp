@@ -45,8 +45,8 @@ class Collisions {
 
     std::vector<std::unique_ptr<Collision>> collisions_; ///< one for each collider
     std::vector<std::uint8_t> is_away_;                  ///< [collider], in this frame
-    std::vector<std::uint32_t>
-        unproven_; ///< scratch list of keep_free(), with capacity for every particle of every collider
+    /// Scratch list of keep_free(), with capacity for every particle of every collider.
+    std::vector<std::uint32_t> unproven_;
     bool rescues_;
 };
 

@@ -28,8 +28,8 @@ struct KnownContacts {
     PointArrays asked_at_body, asked_at; ///< the position of the particle at the last query
     /// [count] There is no surface within this distance of asked_at; negative before the first answer.
     std::vector<float> clearance;
-    PointArrays normal_body,
-        normal;                ///< of the contact plane, towards the side on which the particle has to be
+    /// The normal of the contact plane, towards the side on which the particle has to be.
+    PointArrays normal_body, normal;
     std::vector<float> height; ///< [count] the height of asked_at over the plane, or kNoPlane
 
     /// @param passes  [count] 1 for the particles that the collider lets through, or empty

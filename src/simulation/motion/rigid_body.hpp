@@ -48,8 +48,8 @@ class RigidBody {
 
     double mass_ = 1;
     Vec3d centre_; ///< of mass, in the body frame
-    Matrix3 inertia_{
-        {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}}; ///< about the centre, in the body frame; three columns
+    /// The inertia about the centre, in the body frame; three columns.
+    Matrix3 inertia_{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
     // The velocity of the centre, and the angular momentum and velocity about it, along the world's axes.
     Vec3d velocity_, angular_momentum_, angular_velocity_;
     Vec3d gained_; ///< the acceleration of the centre by the last push()

@@ -21,8 +21,8 @@ class ModelPairs {
 
     struct Found {
         std::vector<FacePair> intersecting; ///< ascending
-        std::vector<std::uint32_t>
-            touching; ///< faces of the surface, ascending; without those that intersect
+        /// Faces of the surface, ascending; without those that intersect.
+        std::vector<std::uint32_t> touching;
     };
     /// @param surface  in the world, including edges and vertices as faces without area
     Found with(const TriangleMesh& surface) const;

@@ -71,8 +71,8 @@ std::uint64_t hash_of(const Deformable& deformable, std::uint64_t start_hash) {
         hasher.add(constraint.a, constraint.b, constraint.rest_length, constraint.kind);
     for (const Attachment& attachment : deformable.attachments)
         hasher.add(attachment.particle, attachment.collider);
-    std::set<std::pair<std::uint32_t, std::uint32_t>>
-        filters; // the input may be in any order, with duplicates
+    // The input may be in any order, with duplicates.
+    std::set<std::pair<std::uint32_t, std::uint32_t>> filters;
     for (const CollisionFilter& filter : deformable.filters)
         filters.emplace(filter.collider, filter.particle);
     for (const auto& [collider, particle] : filters) hasher.add(collider, particle);
