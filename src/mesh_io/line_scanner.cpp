@@ -71,8 +71,8 @@ std::from_chars_result read_number(std::string_view word, Number& value) {
             value = std::strtof(text.c_str(), &end);
         else
             value = std::strtod(text.c_str(), &end);
-        const bool is_lost =
-            value == 0 || std::isinf(value); // otherwise it was only rounded to a small number
+        // ERANGE is also set for small numbers that are only rounded.
+        const bool is_lost = value == 0 || std::isinf(value);
         return {word.data() + (end - text.c_str()),
                 errno == ERANGE && is_lost ? std::errc::result_out_of_range : std::errc{}};
     }

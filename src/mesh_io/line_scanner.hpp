@@ -104,8 +104,8 @@ class LineScanner {
     bool reads_across_lines_ = false;
     std::string reason_;
     std::string_view rest_; // the rest of the line
-    std::string
-        joined_; // the lines that a continued line consists of, with blanks between them; otherwise empty
+    // The lines that a continued line consists of, with blanks between them; otherwise empty.
+    std::string joined_;
     std::size_t next_ = 0;        // offset of the next line
     std::size_t line_number_ = 0; // of the present line, counted from 1
     std::size_t next_number_ = 1; // of the next line; a continued line counts as several

@@ -35,8 +35,7 @@ class ObjReader {
         const std::string_view keyword = scanner_.next_word();
         if (keyword == "v")
             read_vertex();
-        else if (keyword == "f" ||
-                 keyword == "fo") // fo is a keyword of versions before 3, which version 3 reads as f
+        else if (keyword == "f" || keyword == "fo") // version 3 reads fo, of earlier versions, as f
             read_face();
         else if (keyword == "l")
             read_line();

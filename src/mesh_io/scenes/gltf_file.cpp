@@ -335,8 +335,8 @@ std::string_view GltfFile::read_beside(const GltfValue& buffer, const std::strin
         const fs::path folder = utf8_path(source_.name).parent_path();
         std::error_code ignored;
         fs::path path = folder / utf8_path(percent_decoded(uri));
-        if (!fs::exists(path, ignored))
-            path = folder / utf8_path(uri); // the name itself may contain a percent sign
+        // The name itself may contain a percent sign.
+        if (!fs::exists(path, ignored)) path = folder / utf8_path(uri);
         // A pipe or a device might be endless.
         if (!fs::is_regular_file(path, ignored))
             buffer.fail("is in the file " + shown(uri) + ", which is not there or is not a regular file",

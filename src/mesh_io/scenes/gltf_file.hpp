@@ -85,8 +85,8 @@ class GltfFile {
     std::map<std::string, std::vector<GltfValue>> arrays_; ///< of the root, after they were requested
     std::map<std::size_t, std::string_view> buffers_;      ///< those that were requested
     std::map<std::size_t, std::string> decoded_;           ///< of buffers that are in the text
-    std::map<std::string, std::vector<std::byte>>
-        files_; ///< the separate files; several buffers may name the same one
+    /// The separate files; several buffers may name the same one.
+    std::map<std::string, std::vector<std::byte>> files_;
     Budget budget_;
 };
 

@@ -37,8 +37,8 @@ class GltfShapes {
     std::vector<SceneShape> shapes_;
     std::map<std::size_t, std::vector<std::size_t>> shapes_of_meshes_;
     std::map<std::size_t, std::vector<Vec3d>> positions_; ///< by accessor
-    std::vector<std::uint32_t>
-        new_numbers_; ///< of vertices; all are kUnused except while a shape is being made
+    /// The new numbers of vertices; all are kUnused except while a shape is being made.
+    std::vector<std::uint32_t> new_numbers_;
 };
 
 } // namespace echinus

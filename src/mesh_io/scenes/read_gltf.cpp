@@ -318,8 +318,8 @@ class GltfReader {
     GltfShapes shapes_;
     SceneFile scene_;
     std::vector<GltfValue> all_nodes_; ///< of the file
-    std::vector<std::size_t>
-        numbers_; ///< of the file's nodes, in SceneFile::nodes; kNone for nodes that are left out
+    /// The numbers of the file's nodes in SceneFile::nodes; kNone for nodes that are left out.
+    std::vector<std::size_t> numbers_;
     std::vector<std::size_t> file_nodes_;      ///< the inverse of numbers_
     std::size_t scene_size_ = 0;               ///< nodes of the scene that is shown
     std::map<std::size_t, std::size_t> skins_; ///< numbers in SceneFile::skins
