@@ -16,7 +16,7 @@ Input::Input(const fs::path& path)
     if (path == kStandardStream) return;
     errno = 0;
     file_.open(path, std::ios::binary);
-    // A directory opens like a file and fails only when it is read, without a reason.
+    // A directory can be opened like a file, and reading it fails without a reason.
     std::error_code ignored;
     if (fs::is_directory(path, ignored)) errno = EISDIR;
     if (!file_ || errno == EISDIR) {
@@ -36,7 +36,7 @@ bool Input::read_line(std::string& line) {
     constexpr int kEnd = std::char_traits<char>::eof();
     int c = characters.sbumpc();
     if (c == kEnd) {
-        stream_.peek(); // notices the end, or an error
+        stream_.peek(); // detects the end or an error
         require_good();
         return false;
     }

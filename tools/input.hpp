@@ -9,7 +9,7 @@
 #include <istream>
 #include <string>
 
-/// How sentences call an input: its path, or "standard input" for "-".
+/// The name of an input in sentences: its path, or "standard input" for "-".
 std::string name_of_input(const std::filesystem::path& path);
 
 /// A file, or standard input for "-", open for reading.
@@ -25,9 +25,9 @@ class Input {
     static constexpr std::size_t kMaxLineLength = std::size_t{1} << 20;
 
     /// The next line without its line break (LF or CR LF); false at the end.
-    /// @throws echinus::Error Unreadable; Damaged when the line is longer than kMaxLineLength
+    /// @throws echinus::Error Unreadable; Damaged if the line is longer than kMaxLineLength
     bool read_line(std::string& line);
-    /// Does the rest begin with this byte?
+    /// Is this the next byte?
     bool next_is(char byte);
     bool at_end();
 

@@ -19,7 +19,7 @@ class InputFile {
     /// @throws echinus::Error Unreadable
     InputFile(const std::filesystem::path& argument, const std::string& format);
 
-    /// The user's name for it.
+    /// The name by which the user knows it.
     const std::string& name() const { return name_; }
 
     /// Calls `read(path)`; in the sentence of an Error the copy is called "standard input".
@@ -40,8 +40,8 @@ class InputFile {
     std::optional<PartFolder> copy_; ///< the folder that holds it
 };
 
-/// Calls `use()`. The sentence of an Error with this code then begins with the file's name, also where the
-/// code that found the fault saw only the file's data.
+/// Calls `use()`. The sentence of an Error with this code then begins with the file's name, even if the code
+/// that found the fault saw only the file's data.
 template <typename Use>
 auto naming_file(const std::string& name, echinus::ErrorCode code, Use&& use) {
     try {

@@ -17,7 +17,7 @@ struct Registry {
     std::atomic<bool> interrupted = false;
 };
 
-/// Never destroyed: the thread that cleans up ends with the process.
+/// Never destroyed, since the thread that cleans up ends with the process.
 Registry& registry() {
     static auto& instance = *new Registry;
     return instance;

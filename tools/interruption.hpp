@@ -3,14 +3,14 @@
 #include <filesystem>
 #include <mutex>
 
-/// From now on SIGINT, SIGTERM and SIGHUP first remove what is registered below and then end the program as
-/// they would have done, so that a shell sees 130, 143 or 129 (files/system.hpp). A thread waits for them, so
-/// that the program may be anywhere meanwhile. On Windows a file that is open may stay; the next run removes
-/// it.
+/// From now on SIGINT, SIGTERM and SIGHUP first remove the registered files and folders and then end the
+/// program as they would have done, so that a shell sees 130, 143 or 129 (files/system.hpp). A separate
+/// thread waits for the signals, so that they may arrive at any time. On Windows an open file may remain; the
+/// next run removes it.
 /// @pre the program has no other threads yet
 void clean_up_when_interrupted();
 
-/// While it lives, interruption removes this file or folder.
+/// During its lifetime, interruption removes this file or folder.
 class RemovedWhenInterrupted {
   public:
     explicit RemovedWhenInterrupted(std::filesystem::path path);
@@ -22,9 +22,9 @@ class RemovedWhenInterrupted {
     std::filesystem::path path_;
 };
 
-/// Interruption waits as long as this is held, so that a few renames are done together.
+/// Interruption waits as long as this is held, so that several renames are done together.
 std::unique_lock<std::mutex> hold_interruption();
 
-/// Does not return where the program is being interrupted: what fails meanwhile, fails because results were
+/// Does not return if the program is being interrupted: errors at that time occur because results have been
 /// removed.
 void wait_if_interrupted();

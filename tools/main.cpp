@@ -25,7 +25,7 @@ void add_commands(Program& program) {
         "echinus COMMAND --help shows the options of a command and an example.");
 }
 
-/// For one version only.
+/// To be removed after one version.
 void tell_where_compare_went(int argc, char** argv) {
     if (argc > 1 && std::string_view(argv[1]) == "compare")
         throw WrongUse("'compare' is now a separate program, echinus-compare, which is built from source: "

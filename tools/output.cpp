@@ -27,19 +27,20 @@ void write_standard_output(const void* data, std::size_t byte_count) {
     if (byte_count != 0 && std::fwrite(data, 1, byte_count, stdout) != byte_count) fail_standard_output();
 }
 
-/// The folder itself if it exists, else the nearest one above it: a rename between the two stays on one disk.
+/// The folder itself if it exists, otherwise the nearest existing folder above it: a rename between the two
+/// stays on one disk.
 fs::path nearest_existing_folder(fs::path path) {
     while (!fs::exists(path) && path.has_relative_path()) path = path.parent_path();
     return path;
 }
 
-/// Makes a folder that others cannot read, if it is not there yet.
+/// Makes a folder that others cannot read, if it does not exist yet.
 void make_private_folder(const fs::path& path) {
     if (!echinus::system::make_private_folder(path))
         throw fs::filesystem_error("mkdir", path, std::error_code(errno, std::generic_category()));
 }
 
-/// Runs `action` and turns the system's error into ours.
+/// Runs `action` and converts a system error into Error Unwritable.
 template <typename Action>
 void or_unwritable(const fs::path& target, const Action& action) {
     try {
@@ -74,8 +75,8 @@ void Output::commit() {
     }
 }
 
-/// Another program that clears the folder at this moment may find the part before it is locked, and remove
-/// it; then the next is tried. On file systems without locks the last is taken as it is.
+/// Another program that clears the folder at this moment may find and remove the part before it is locked;
+/// then a new one is made. On file systems without locks, the last one is used anyway.
 PartFolder::PartFolder(const fs::path& parent) {
     echinus::remove_abandoned_parts(parent);
     constexpr int kMostTries = 4;

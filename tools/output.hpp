@@ -23,15 +23,15 @@ class Output {
     void commit();
 
   private:
-    std::optional<echinus::AtomicFile> file_; // empty: standard output
+    std::optional<echinus::AtomicFile> file_; // empty for standard output
 };
 
 /// A part (files/atomic_file.hpp) that is a folder, which only its owner can read. The destructor removes it,
-/// or the interruption of the program; what a killed program left is removed by the next that makes one
-/// beside it.
+/// and so does an interruption of the program; a part that a killed program left is removed by the next
+/// program that makes one in the same folder.
 class PartFolder {
   public:
-    /// @throws std::filesystem::filesystem_error when no folder can be made there
+    /// @throws std::filesystem::filesystem_error if no folder can be made there
     explicit PartFolder(const std::filesystem::path& parent);
     PartFolder(const PartFolder&) = delete;
     PartFolder& operator=(const PartFolder&) = delete;
@@ -46,19 +46,19 @@ class PartFolder {
 };
 
 /// A folder of results that appear all together or not at all: files are written to a part on the same disk;
-/// commit() moves them to their place, and without it they are removed. What the target held before stays as
-/// it was.
+/// commit() moves them to their place, and without it they are removed. Other contents of the target stay as
+/// they were.
 class OutputFolder {
   public:
-    /// @throws echinus::Error Unwritable when the target is a file or no folder can be made there
+    /// @throws echinus::Error Unwritable if the target is a file or no folder can be made there
     explicit OutputFolder(const std::filesystem::path& target);
 
     /// Where to write the file or folder that will be called `name`.
     std::filesystem::path path_of(const std::string& name) const { return part_->path() / name; }
-    /// Moves everything that was written into the target, which is made if need be. Files and folders there
-    /// of the same names are replaced, others stay.
+    /// Moves everything that was written into the target, which is created if necessary. Files and folders
+    /// there of the same names are replaced, others stay.
     void commit();
-    /// Removes a result of an earlier run from the target, if it is there. To be called after commit().
+    /// Removes a result of an earlier run from the target, if it exists. To be called after commit().
     void remove_old(const std::string& name) const;
 
   private:
@@ -70,16 +70,16 @@ class OutputFolder {
 /// @throws echinus::Error Unwritable, so that a full disk behind a redirection is noticed
 void print(std::string_view text);
 
-/// Hands what was printed to the system; the last chance to notice that it went nowhere.
+/// Flushes the output to the system, which is the last chance to detect an error.
 void flush_standard_output();
 
-/// Refuses a result that would take the place of what it is made of.
-/// @throws WrongUse, as the next one
+/// Refuses a result that would replace its own source.
+/// @throws WrongUse, as require_ending() does
 void require_another_file(const std::filesystem::path& source, const std::filesystem::path& target);
 
 /// Refuses a result that is neither "-" nor a file whose name has one of these endings, such as ".obj", in
-/// capitals or not.
+/// upper or lower case.
 void require_ending(const std::filesystem::path& target, std::initializer_list<std::string_view> endings);
 
-/// Refuses --json together with a result that goes to standard output itself.
+/// Refuses --json together with a result that is written to standard output.
 void require_one_result(const std::filesystem::path& target, bool json);

@@ -20,8 +20,8 @@ namespace {
 constexpr int kFailed = 1;
 constexpr int kWrongUse = 2;
 
-/// Control characters become spaces and runs of spaces one: the parser breaks long sentences into lines, and
-/// a file name may hold anything.
+/// Replaces control characters by spaces, and runs of spaces by one: the parser breaks long sentences into
+/// lines, and a file name may contain any character.
 std::string one_line(std::string_view text) {
     std::string line;
     for (char c : text) {

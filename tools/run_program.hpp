@@ -13,5 +13,5 @@
 int run_program(const std::string& name, const std::string& description,
                 const std::function<void(Program&)>& set_up, int argc, char** argv);
 
-/// Prints a sentence on standard error that ends nothing.
+/// Prints a sentence on standard error; the program continues.
 void warn(const std::string& sentence);

@@ -37,7 +37,7 @@ struct BuildArguments {
     bool json = false;
 };
 
-/// An option of the other kind would silently have no effect.
+/// Refuses options of the other kind of map, which would silently have no effect.
 void refuse_options_of_the_other_kind(const BuildArguments& arguments) {
     const bool exact = arguments.kind == MapKind::Exact;
     for (const Option option : exact ? arguments.distance_only : arguments.exact_only)
@@ -65,14 +65,14 @@ DistanceMapOptions distance_options_of(const BuildArguments& arguments) {
     return options;
 }
 
-/// Behind a hole a distance map is wrong about what is inside, and an exact map is uncertain, so such maps
-/// need an explicit option. A mesh without volume has no inside. For an inside-out mesh, the correction of a
-/// distance map would have the wrong sign; an exact map is unaffected.
+/// Behind a hole, a distance map misjudges what is inside, and an exact map is uncertain, so maps of open
+/// meshes need an explicit option. A mesh without volume has no inside. For an inside-out mesh, the
+/// correction of a distance map would have the wrong sign; an exact map is unaffected.
 void require_solid(const MeshReport& report, const TriangleMesh& mesh, const BuildArguments& arguments) {
     const bool exact = arguments.kind == MapKind::Exact;
     const std::string name = arguments.mesh.name();
     const double radius = report.bounding_sphere.radius;
-    constexpr double kRounding = 1e-13; // of a sum over faces that cancel
+    constexpr double kRounding = 1e-13; // of a sum over faces whose volumes cancel
     if (report.closed && std::fabs(report.signed_volume) <= kRounding * radius * radius * radius && !exact)
         throw Error(ErrorCode::InvalidMesh,
                     name + ": the mesh encloses no volume; it is flat, or so far from the origin that its "
@@ -90,7 +90,7 @@ void require_solid(const MeshReport& report, const TriangleMesh& mesh, const Bui
                                             : "wrong answers behind its holes with --allow-open")));
 }
 
-/// Of a closed surface, in cubic lattice steps.
+/// The signed volume of a closed surface, in cubic lattice steps.
 double signed_volume(const ExactMapView& map) {
     const auto corner = [&](std::size_t i) { return LatticePoint(map.vertices[map.corners[i]]); };
     double sum = 0;
@@ -99,7 +99,7 @@ double signed_volume(const ExactMapView& map) {
     return sum / 6;
 }
 
-/// Places a few lattice steps off the middle of each face, before and behind it.
+/// Positions a few lattice steps off the middle of each face, in front of it and behind it.
 std::vector<Vec3f> places_beside_faces(const ExactMapView& map) {
     const LatticeFrame frame(map.centre, map.radius);
     std::vector<Vec3f> places;
@@ -115,9 +115,9 @@ std::vector<Vec3f> places_beside_faces(const ExactMapView& map) {
     return places;
 }
 
-/// Is the volume no more than rounding makes, the winding number 0 in every gap, and no place beside a face
-/// inside? The first is possible of a solid, too, with parts that are turned oppositely and cancel; the
-/// second if a coarse map holds all of the inside within bands.
+/// Is the volume no larger than rounding permits, the winding number 0 in every gap, and no position next to
+/// a face inside? A solid may also satisfy the first condition, if some of its parts have the opposite
+/// orientation and the volumes cancel, or the second, if a coarse map has all of the inside within bands.
 bool encloses_nothing(const ExactMapView& map) {
     constexpr double kRounding =
         4.0 * kLatticeExtent * kLatticeExtent; // the largest section, a few steps thick
@@ -134,7 +134,8 @@ bool encloses_nothing(const ExactMapView& map) {
 AnyMap build_kind(const TriangleMesh& mesh, const BuildArguments& arguments) {
     if (arguments.kind == MapKind::Exact) {
         ExactMap map = naming_file(arguments.mesh.name(), ErrorCode::InvalidOptions, [&] {
-            return ExactMap::build(mesh, exact_options_of(arguments)); // which refuses too small a budget
+            // build() refuses a budget that is too small.
+            return ExactMap::build(mesh, exact_options_of(arguments));
         });
         if (encloses_nothing(map) && !arguments.allow_open)
             throw Error(
@@ -156,7 +157,7 @@ struct BuiltMap {
     AnyMap map;
     MapFileNotes notes;
     RepairReport repairs;
-    bool inside_out = false; ///< the mesh, as the map has it
+    bool inside_out = false; ///< whether the mesh is inside out, according to the map
     double rounding_step = 0;
 };
 

@@ -153,7 +153,7 @@ std::string result_text(const NamedMeshes& input, const std::vector<CheckedMeshe
 
 // ---- Geometry ----
 
-/// All meshes, the faces that intersect red, and the curves as edges.
+/// All meshes, with intersecting faces in red and the intersection curves as edges.
 class Painting {
   public:
     explicit Painting(const std::vector<TriangleMesh>& meshes) {
@@ -201,7 +201,7 @@ class Painting {
         if (curve.closed) edges_.push_back({end - 1, first});
     }
 
-    /// The edges of a PLY are numbers of type int.
+    /// The vertex indices of edges in a PLY file have type int.
     std::uint32_t next_index() const {
         if (whole_.vertices.size() > std::numeric_limits<std::int32_t>::max())
             throw Error(ErrorCode::InvalidMesh, "the meshes have more vertices than a PLY can number; "

@@ -60,7 +60,7 @@ double mean_entries(const DistanceMapView& map) {
     return static_cast<double>(map.entry_count()) / static_cast<double>(map.direction_count());
 }
 
-/// One line for each number of entries: how many directions have it.
+/// One line for each number of entries, with the number of directions that have it.
 std::string histogram_text(const DistanceMapView& map) {
     constexpr double kBarWidth = 40;
     const auto direction_count = static_cast<double>(map.direction_count());

@@ -22,7 +22,7 @@ void write_result(const std::filesystem::path& target, const TriangleMesh& mesh)
         write_mesh(target, mesh);
 }
 
-/// A shape's command with what all shapes have in common.
+/// Adds the command of a shape with the options that all shapes have in common.
 Command add_shape(Command mesh, const std::string& name, const std::string& description,
                   const std::string& example, std::filesystem::path& target) {
     Command shape = mesh.add_command(name, description);

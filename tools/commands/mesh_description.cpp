@@ -26,7 +26,7 @@ std::vector<NamedFault> faults_of(const MeshReport& report) {
             {"degenerate_faces", "degenerate faces", report.degenerate_faces}};
 }
 
-/// "at faces 382, 383", or "first at faces 382, 383" where not all edges or faces at fault are covered.
+/// "at faces 382, 383", or "first at faces 382, 383" if not all edges or faces at fault are listed.
 std::string first_faces(const Fault& fault) {
     const bool all_shown = fault.first_faces.size() < Fault::kFirstFaceCount;
     const bool one = fault.first_faces.size() == 1;

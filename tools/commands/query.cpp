@@ -33,7 +33,8 @@ struct QuerySummary {
     std::uint64_t point_count = 0;
     std::uint64_t inside_count = 0;
     std::uint64_t contact_count = 0;
-    double points_step = 0; ///< of the points' floats, where they are too coarse for the map; else 0
+    /// The spacing of the points' floats if they are too coarse for the map; otherwise 0.
+    double points_step = 0;
 };
 
 void require_sound(const QueryArguments& arguments) {
@@ -48,7 +49,7 @@ void require_sound(const QueryArguments& arguments) {
     require_another_file(arguments.points, arguments.target);
 }
 
-/// By the name's extension; on standard output the points' format.
+/// The format by the extension of the name; on standard output, the format of the points.
 TableFormat format_of_answers(const fs::path& target, TableFormat format_of_points) {
     if (target == kStandardStream) return format_of_points;
     require_ending(target, {".npy", ".csv"});
@@ -75,8 +76,8 @@ Vec3d origin_of(const AnyMap& map) {
     return std::visit([](const auto& kind) { return kind.view().origin; }, map);
 }
 
-/// A map with an origin is of a mesh that floats could not hold where it is, and so they hold no points
-/// there.
+/// A map has an origin if floats could not hold its mesh in its place, so they cannot hold points there
+/// either.
 double points_step(const AnyMap& map, const PointSource& source) {
     if (!source.holds_floats()) return 0;
     const Vec3d origin = origin_of(map);
@@ -86,7 +87,7 @@ double points_step(const AnyMap& map, const PointSource& source) {
 /// Computes the fields that only exact maps have, one block at a time.
 struct ExactAnswers {
     const AnyMap& map;
-    std::vector<float> signed_distances, winding_numbers; ///< as large as a block, or not wanted
+    std::vector<float> signed_distances, winding_numbers; ///< as large as a block; empty if not requested
 
     void complete(Answers& answers, StridedSpan<const Vec3f> points) {
         if (!signed_distances.empty()) {

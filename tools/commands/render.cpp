@@ -71,7 +71,7 @@ void write_picture(const PictureArguments& arguments, const Image& image) {
     output.commit();
 }
 
-/// Options that report to a bar; `part` of `part_count` equal pieces of work.
+/// The options with a progress bar, for one of `part_count` equal parts of the work.
 RenderOptions with_progress(const RenderOptions& options, ProgressBar& bar, std::size_t part = 0,
                             std::size_t part_count = 1) {
     RenderOptions result = options;
@@ -188,10 +188,10 @@ struct SimulationPicture : PictureArguments {
     fs::path folder;
     std::optional<std::int64_t> frame;
     Vec3d close_up;
-    double close_up_reach = 0; ///< along each axis; 0: no close-up
+    double close_up_reach = 0; ///< along each axis; 0 for no close-up
 };
 
-/// Marks what intersects something: a face of the cloth, or the tube of a piece of thread.
+/// Marks an element that intersects something: a face of the cloth, or the tube of a piece of thread.
 void mark(RenderedObject& drawn, std::uint32_t number, std::size_t face_count) {
     const auto first_of_tubes = static_cast<std::uint32_t>(face_count);
     if (number < first_of_tubes) return drawn.marked_faces.push_back(number);
@@ -228,7 +228,7 @@ std::array<RenderedObject, 2> objects_at(const SimulationFolder& folder, std::si
     return objects;
 }
 
-/// The camera that sees the cube around a point as large as possible, on the floor of the whole scene.
+/// The camera that shows the cube around a point as large as possible, with the floor of the whole scene.
 Camera close_up_camera(const SimulationPicture& arguments, const View& view, const Camera& whole) {
     const double reach = arguments.close_up_reach;
     std::vector<Vec3f> corners;

@@ -8,8 +8,8 @@
 
 /// The repairs that `build` and `mesh repair` can make.
 struct RepairArguments {
-    bool repair = false; ///< what needs no guess
-    /// The rest, as RepairOptions has it.
+    bool repair = false; ///< the repairs that require no guesswork
+    /// The other repairs, as in RepairOptions.
     double weld_distance = 0;
     std::uint32_t max_hole_edges = 0;
     bool drop_inner_faces = false;

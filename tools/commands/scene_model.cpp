@@ -41,7 +41,7 @@ struct NameOfModel {
     std::string operator()(const BoxModel&) const { return "box"; }
 };
 
-/// A hole would let particles in, and what is inside behind it nobody can tell.
+/// Refuses an open mesh: a hole would let particles in, and behind it the inside is undefined.
 /// @param as_read  the mesh before the repairs that the scene names
 void require_closed(const TriangleMesh& mesh, const TriangleMesh& as_read, const std::string& name) {
     const MeshReport report = inspect(mesh);
@@ -71,7 +71,7 @@ std::string notice_beside(const fs::path& model_file) {
 
 namespace {
 
-/// Where files of a scene are looked for, after those that the caller names.
+/// The folders in which files of a scene are searched, beginning with those that the caller names.
 std::vector<fs::path> with_folders_of(const fs::path& scene_path, std::vector<fs::path> folders) {
     folders.push_back(scene_path.parent_path().empty() ? "." : scene_path.parent_path());
     folders.push_back(scene_path.parent_path() / ".." / "models");
@@ -105,7 +105,7 @@ TriangleMesh load_model(const SceneCollider& collider, const fs::path& scene_pat
 
 namespace {
 
-/// The tetrahedra of a file, or those that fill its surface. Generated shapes are filled where the deformable
+/// The tetrahedra of a file, or those that fill its surface. Generated shapes are filled when the deformable
 /// is made.
 TetrahedralMesh load_body(const SceneBody& body, const fs::path& scene_path,
                           const std::vector<fs::path>& folders) {
@@ -137,7 +137,7 @@ ClothMeshes load_meshes(const Scene& scene, const fs::path& scene_path,
 
 namespace {
 
-/// The exact map that judges a model: that of the scene, or its own.
+/// The exact map that judges a model: that of the scene, or one built for this purpose.
 ExactMap judge_of(const AnyMap& map, const TriangleMesh& mesh, unsigned thread_count) {
     if (const auto* exact = std::get_if<ExactMap>(&map)) return *exact;
     return ExactMap::build(mesh, {.thread_count = thread_count});

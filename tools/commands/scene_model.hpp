@@ -12,23 +12,25 @@
 #include <string>
 #include <vector>
 
-/// Where a mesh of a scene comes from: the path of its file, or nothing for one that is generated. The file
-/// is looked up in `folders`, beside the scene, in ../models beside it, then in models in the working folder.
+/// The file from which a mesh of a scene comes, or nothing for a generated mesh. The file is searched in
+/// `folders`, in the folder of the scene, in ../models relative to that, and then in models in the working
+/// folder.
 /// @throws echinus::Error Unreadable
 std::optional<std::filesystem::path> model_file(const echinus::SceneModel& model,
                                                 const std::filesystem::path& scene_path,
                                                 std::vector<std::filesystem::path> folders);
 
-/// The path of a collider's cache, which is looked up in the same way.
+/// The path of a collider's cache, which is searched in the same way.
 /// @throws echinus::Error Unreadable
 std::filesystem::path cache_path(const echinus::CacheFile& cache, const std::filesystem::path& scene_path,
                                  std::vector<std::filesystem::path> folders);
 
 /// The mesh of a collider's model, read from its file or generated, and repaired by the scene's options.
-/// @param file  what model_file() found
-/// @param may_be_open  surfaces are kept apart whether they have an inside or not
-/// @throws echinus::Error as read_scene's parts do, and InvalidMesh when the mesh is not closed in the end
-/// and has to be
+/// @param file  the result of model_file()
+/// @param may_be_open  whether an open mesh is accepted: colliding surfaces are kept apart even if they
+/// enclose nothing
+/// @throws echinus::Error as read_scene's parts do, and InvalidMesh if the mesh has to be closed and is not,
+/// even after the repairs
 echinus::TriangleMesh load_model(const echinus::SceneCollider& collider,
                                  const std::filesystem::path& scene_path,
                                  const std::optional<std::filesystem::path>& file, bool may_be_open);
@@ -42,33 +44,34 @@ echinus::ClothMeshes load_meshes(const echinus::Scene& scene, const std::filesys
 std::string model_name(const echinus::SceneModel& model);
 
 /// The file NOTICE in the model's folder, on the source of the models, to accompany published pictures; empty
-/// where there is none.
+/// if there is none.
 /// @throws echinus::Error Unreadable
 std::string notice_beside(const std::filesystem::path& model_file);
 
-/// The colliders of a scene, with their models and what makes them deform.
+/// The colliders of a scene, with their models and the caches by which they deform.
 struct LoadedColliders {
     std::vector<echinus::ColliderMap> maps;
-    std::vector<JudgedModel> judged; ///< as they begin
+    std::vector<JudgedModel> judged; ///< in their initial shape
     std::vector<echinus::Vec3d> scales;
-    std::vector<echinus::VertexCache> caches; ///< empty of those that do not deform
-    std::vector<std::filesystem::path> files; ///< of those models and caches that come from files
+    std::vector<echinus::VertexCache> caches; ///< empty for models that do not deform
+    std::vector<std::filesystem::path> files; ///< the files from which models and caches come
     std::string names;                        ///< of the models
-    std::string notice;                       ///< of the first model's source that has one
+    std::string notice;                       ///< the notice of the first model that has one
 
     bool deforms(std::size_t collider) const { return caches[collider].samples != nullptr; }
-    /// Scaled, not moved.
+    /// The mesh at a time, scaled but not moved.
     echinus::TriangleMesh mesh_at(std::size_t collider, double seconds) const;
     /// The references by which the colliders are judged at that time.
     std::vector<JudgedModel> judged_at(double seconds, unsigned thread_count) const;
 };
 
-/// @throws echinus::Error as the parts do; of options that a key of the scene gives as errors of the scene
+/// @throws echinus::Error as the parts do; errors in options from the scene are reported as errors of the
+/// scene
 LoadedColliders load_colliders(const echinus::Scene& scene, const std::filesystem::path& scene_path,
                                const std::vector<std::filesystem::path>& folders, unsigned thread_count);
 
 /// Reports errors in the options that a scene gives as errors of the scene.
-/// @param key  whose options they are, where their sentences do not say so
+/// @param key  the key that contains the options, for sentences that do not name it
 template <typename Make>
 auto made_as_scene_says(const std::filesystem::path& scene, const std::string& key, const Make& make) {
     try {

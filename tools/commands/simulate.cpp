@@ -35,31 +35,32 @@ constexpr const char* kFramesName = "frames";
 
 struct SimulateArguments {
     fs::path scene;
-    fs::path target;                 ///< folder; empty: none
-    fs::path page;                   ///< empty: none
-    fs::path player;                 ///< empty: the installed one
-    fs::path from_state, save_state; ///< empty: none
+    fs::path target;                 ///< folder; empty for none
+    fs::path page;                   ///< empty for none
+    fs::path player;                 ///< empty for the installed one
+    fs::path from_state, save_state; ///< empty for none
     std::vector<fs::path> model_folders;
     std::optional<std::uint32_t> frame_limit;
     std::optional<std::uint32_t> stride;
-    std::optional<std::uint32_t> particle_count; ///< of the sheet, about
-    std::optional<unsigned> thread_count; ///< in place of the scene's key, and for what is done on all cores
+    std::optional<std::uint32_t> particle_count; ///< approximate number for the sheet
+    /// The number of threads, instead of the scene's key and of all cores.
+    std::optional<unsigned> thread_count;
 
     unsigned threads_around() const { return thread_count.value_or(0); }
-    std::optional<CollisionMode> collision; ///< in place of the scene's
-    bool judges_all = false;                ///< saved frames, not only the last
+    std::optional<CollisionMode> collision; ///< instead of the scene's
+    bool judges_all = false;                ///< whether all saved frames are judged, not only the last
     bool obj = false;
     bool json = false;
 };
 
-/// In the folder, by the collider's number.
+/// The name of a collider's file in the folder, by the collider's number.
 std::string collider_file(std::size_t number, const char* extension = "obj") {
     return number == 0 ? fmt::format("collider.{}", extension)
                        : fmt::format("collider_{}.{}", number, extension);
 }
 
-/// The output folder, with the positions of the cloth in every saved frame: one point cache, or one OBJ each;
-/// and with point caches of the colliders that deform.
+/// The output folder, with the positions of the cloth in every saved frame: as one point cache or as one OBJ
+/// file for each frame; and with point caches of the colliders that deform.
 class ResultFolder {
   public:
     ResultFolder(const fs::path& target, bool obj) : folder_(target), obj_(obj) {}
@@ -107,10 +108,10 @@ class ResultFolder {
     std::optional<VisibleSurface> surface_;
     std::optional<PointCacheWriter> cache_;
     const LoadedColliders* colliders_ = nullptr;
-    std::vector<std::unique_ptr<PointCacheWriter>> collider_caches_; ///< null where it does not deform
+    std::vector<std::unique_ptr<PointCacheWriter>> collider_caches_; ///< null if it does not deform
 };
 
-/// The output page. Constructed before the simulation, so that a missing player fails at once.
+/// The output page. Constructed before the simulation, so that a missing player is reported at once.
 struct Page {
     Page(const fs::path& target, const fs::path& player_path) : player(player_path), output(target) {}
 
@@ -119,13 +120,13 @@ struct Page {
     std::optional<Recording> recording;
 };
 
-/// The output of a simulation: a folder, a page, or both, and a state to go on from.
+/// The output of a simulation: a folder, a page, or both, and a state from which to continue.
 struct Results {
     std::optional<ResultFolder> folder;
     std::optional<Page> page;
     std::optional<Output> state;
 
-    /// Call at the start and after each step.
+    /// To be called at the start and after each step.
     void watch(const Simulation& simulation, std::uint32_t stride) {
         if (folder && simulation.frame() % stride == 0) folder->add(simulation);
         if (page) page->recording->watch(simulation);
@@ -133,9 +134,9 @@ struct Results {
 };
 
 struct Course {
-    std::vector<std::vector<SavedPose>> poses; ///< by collider
-    std::vector<std::vector<SavedLoad>> loads; ///< by collider
-    std::uint64_t most_truncated = 0;          ///< vertices in one frame
+    std::vector<std::vector<SavedPose>> poses; ///< [collider]
+    std::vector<std::vector<SavedLoad>> loads; ///< [collider]
+    std::uint64_t most_truncated = 0;          ///< the most vertices truncated in one frame
     std::optional<WorstFrames> worst;
 };
 
@@ -144,7 +145,7 @@ bool has_moved(const RigidTransform& from, const RigidTransform& to) {
     return from.translation != to.translation || a.w != b.w || a.x != b.x || a.y != b.y || a.z != b.z;
 }
 
-/// Sums up the loads on colliders from one saved frame to the next.
+/// Averages the loads on colliders from one saved frame to the next.
 class LoadMeter {
   public:
     explicit LoadMeter(const Simulation& simulation)
@@ -169,7 +170,7 @@ class LoadMeter {
 
   private:
     const Simulation* simulation_;
-    std::vector<Load> sums_; ///< by collider
+    std::vector<Load> sums_; ///< [collider]
     int frame_count_ = 0;
 };
 
@@ -189,12 +190,12 @@ class FrameJudge {
 
   private:
     const LoadedColliders* colliders_;
-    std::vector<TriangleMesh> models_; ///< scaled, not moved
+    std::vector<TriangleMesh> models_; ///< scaled, but not moved
 };
 
 /// Steps until the cloth rests or the frame limit is reached; stops only after a frame that was saved, so
-/// that the last sample is the end.
-/// @param judge  of the frames that are saved, or none
+/// that the last sample is the final state.
+/// @param judge  judges the saved frames; may be empty
 Course run(Simulation& simulation, Results& results, std::uint32_t frame_limit, std::uint32_t stride,
            std::optional<FrameJudge> judge) {
     ProgressBar progress("simulating");
@@ -262,7 +263,7 @@ std::uint32_t page_stride(const SimulateArguments& arguments, const Scene& scene
     return arguments.stride.value_or(stride_for_display(scene.simulation.time_step));
 }
 
-/// Before the simulation, so that output that cannot be written is refused at once.
+/// Called before the simulation, so that output that cannot be written is refused at once.
 void open(Results& results, const SimulateArguments& arguments, const Scene& scene,
           const ClothMeshes& cloth) {
     if (!arguments.target.empty()) results.folder.emplace(arguments.target, arguments.obj);
@@ -275,7 +276,7 @@ void open(Results& results, const SimulateArguments& arguments, const Scene& sce
     }
 }
 
-/// Where only particles collide there is nothing to untangle.
+/// If only particles collide, there is nothing to untangle.
 void choose_collision(const SimulateArguments& arguments, Scene& scene) {
     if (!arguments.collision) return;
     auto* const newton = std::get_if<NewtonOptions>(&scene.simulation.solver);
@@ -288,13 +289,13 @@ void choose_collision(const SimulateArguments& arguments, Scene& scene) {
     newton->untangle = newton->untangle && scene.simulation.surfaces_collide();
 }
 
-/// A sheet of about so many particles in place of the scene's, whose rows and columns keep their proportion.
-/// Those that are held are the nearest to the scene's.
+/// Replaces the scene's sheet by one with about this many particles and the same ratio of rows to columns.
+/// The particles nearest to those that the scene holds are held.
 void choose_particles(std::uint32_t particle_count, Scene& scene) {
     if (!scene.has_cloth || scene.mesh_cloth)
         throw WrongUse("--particles", "applies only to a sheet, and the scene has none; a cloth made from a "
                                       "mesh has the mesh's vertices");
-    constexpr double kLeast = 2, kMost = 4096; // as in scenes
+    constexpr double kLeast = 2, kMost = 4096; // the limits of scenes
     ClothOptions& sheet = scene.cloth;
     const ClothOptions before = sheet;
     const double factor = std::sqrt(particle_count / (double{1} * sheet.column_count * sheet.row_count));
@@ -313,7 +314,7 @@ void choose_particles(std::uint32_t particle_count, Scene& scene) {
                            sheet.column_count +
                        nearest(particle % before.column_count, before.column_count, sheet.column_count);
         }
-        // Particles that have come to one place are held once.
+        // Particles that have become the same one are held only once.
         std::erase_if(particles, [&](std::uint32_t particle) { return !held.insert(particle).second; });
     };
     renumber(sheet.pins);
@@ -343,7 +344,8 @@ void require_playable_colliders(const SimulateArguments& arguments, const Scene&
                                          collider.cache->name + " deforms one; write a folder with -o DIR");
 }
 
-/// A state of another scene is a wrong file, not a wrong option.
+/// Continues from a saved state. A state of another scene is reported as a file of the wrong format, not as
+/// an invalid option.
 void go_on_from(const fs::path& state, std::uint32_t frame_limit, Simulation& simulation) {
     try {
         simulation.restore_state(state);
@@ -373,8 +375,8 @@ void simulate(const SimulateArguments& arguments) {
     choose_collision(arguments, scene);
     if (arguments.particle_count) choose_particles(*arguments.particle_count, scene);
     require_playable_colliders(arguments, scene);
-    // A page takes its frames from all, and so its last is the end; a folder's last must be one that is
-    // saved.
+    // A page chooses its frames from all, so its last one is the end; the last frame of a folder must be a
+    // saved one.
     const std::uint32_t stride = arguments.target.empty() ? 1 : arguments.stride.value_or(1);
     const ClothMeshes cloth = load_meshes(scene, arguments.scene, arguments.model_folders);
     Results results;

@@ -13,7 +13,7 @@ using namespace echinus;
 
 namespace {
 
-/// Elements of less than a twentieth of their volume at rest, or inside out.
+/// Counts the elements that have less than a twentieth of their volume at rest, or are inside out.
 std::size_t count_crushed(const Deformable& deformable) {
     constexpr double kCrushed = 0.05;
     const auto determinant = [](const Vec3d& a, const Vec3d& b, const Vec3d& c) {
@@ -73,7 +73,7 @@ const char* collision_of(const SimulationOptions& options) {
                                         : "particles";
 }
 
-/// In a frame.
+/// The largest number of iterations in a frame.
 std::uint32_t most_iterations_of(const SimulationOptions& options) {
     const auto* newton = std::get_if<NewtonOptions>(&options.solver);
     return newton != nullptr ? newton->step_count : options.jakobsen().iteration_count;
@@ -168,7 +168,7 @@ Json json_of(const std::vector<ColliderResult>& colliders, const Simulation& sim
     return list;
 }
 
-/// R of the largest.
+/// The radius R of the largest collider.
 double radius_of(const std::vector<ColliderResult>& colliders) {
     double radius = 0;
     for (const ColliderResult& collider : colliders) radius = std::max(radius, collider.radius);

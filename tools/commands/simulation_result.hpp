@@ -11,13 +11,13 @@
 #include <string>
 #include <vector>
 
-/// Where a collider stood in a frame that was saved.
+/// The pose of a collider in a saved frame.
 struct SavedPose {
     std::uint32_t frame;
     echinus::RigidTransform pose;
 };
 
-/// The load on a collider in the frames since the one before that was saved, as their mean.
+/// The mean load on a collider over the frames since the previous saved frame.
 struct SavedLoad {
     std::uint32_t frame;
     echinus::Load load;
@@ -25,18 +25,18 @@ struct SavedLoad {
 
 /// The part of a report about a collider.
 struct ColliderResult {
-    std::string mesh_name;        ///< of the file in the folder
-    std::string cache_name;       ///< of that with its vertices over time; empty where it does not deform
+    std::string mesh_name;  ///< the name of the file in the folder
+    std::string cache_name; ///< the name of the file with its vertices over time; empty if it does not deform
     echinus::MeshReport model;    ///< as read
     double radius;                ///< R in the world
-    std::vector<SavedPose> poses; ///< one when it stands still
-    std::vector<SavedLoad> loads; ///< of each saved frame; none under a solver that measures none
+    std::vector<SavedPose> poses; ///< only one if it is at rest
+    std::vector<SavedLoad> loads; ///< for each saved frame; empty for a solver that measures none
 };
 
-/// Of the frames that were judged, the one with the most pairs of faces that intersect.
+/// The frame with the most intersecting pairs of faces, among those that were judged.
 struct WorstFrame {
     std::size_t pair_count = 0;
-    std::uint32_t frame = 0; ///< the first with so many
+    std::uint32_t frame = 0; ///< the first with this count
 };
 
 /// The frames with the most intersecting pairs during the simulation.
@@ -60,8 +60,8 @@ struct SimulationResult {
     const echinus::Simulation& simulation;
     std::vector<ColliderResult> colliders; ///< at least one
     Verdict verdict;
-    std::uint64_t most_truncated = 0; ///< vertices in one frame
-    std::optional<WorstFrames> worst; ///< none where only the end was judged
+    std::uint64_t most_truncated = 0; ///< the most vertices truncated in one frame
+    std::optional<WorstFrames> worst; ///< none if only the end was judged
 };
 
 /// The object of report.json.

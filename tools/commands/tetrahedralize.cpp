@@ -31,7 +31,7 @@ struct TetrahedralizeArguments {
     bool json = false;
 };
 
-/// A body, what it is like, and how it was made.
+/// A body, its properties, and how it was made.
 struct Outcome {
     Tetrahedralization body;
     TetrahedralReport report;
@@ -88,16 +88,16 @@ Json json_of(const Outcome& outcome) {
             {"milliseconds", milliseconds}};
 }
 
-/// @param asked  the count that was asked for, or 0
+/// @param asked  the requested count, or 0
 std::string count_text(std::size_t count, std::size_t asked) {
-    constexpr double kTolerance = 0.05; // of tetrahedralize()
+    constexpr double kTolerance = 0.05; // the tolerance of tetrahedralize()
     const bool misses =
         asked > 0 && std::abs(static_cast<double>(count) / static_cast<double>(asked) - 1) > kTolerance;
     return std::to_string(count) +
            (misses ? fmt::format(", in place of {}: the model does not allow that number", asked) : "");
 }
 
-/// @param asked  the count that was asked for, or 0
+/// @param asked  the requested count, or 0
 std::string text_of(const Outcome& outcome, const std::string& title, std::size_t asked) {
     const auto& [body, report, distance, repairs, milliseconds] = outcome;
     Table table(title);

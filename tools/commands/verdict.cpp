@@ -31,7 +31,7 @@ std::vector<Vec3f> stopped_by(std::size_t collider, const Deformable& deformable
     return positions;
 }
 
-/// Depths of the particles inside, by the mesh itself.
+/// Determines the depths of the particles inside, by the mesh itself.
 void judge_particles(std::span<const Vec3f> positions, const TriangleMesh& solid, const RigidTransform& pose,
                      unsigned thread_count, Verdict& verdict) {
     constexpr double kOutside = -1;
@@ -49,13 +49,14 @@ void judge_particles(std::span<const Vec3f> positions, const TriangleMesh& solid
     }
 }
 
-/// As a recording has it: rounded to float.
+/// The mesh at a pose, rounded to float as in a recording.
 TriangleMesh placed(TriangleMesh mesh, const RigidTransform& pose) {
     for (Vec3f& vertex : mesh.vertices) vertex = Vec3f(pose.to_world(Vec3d(vertex)));
     return mesh;
 }
 
-/// Adds the particles near a collider to the gap; its mean is their sum until all colliders are done.
+/// Adds the particles near a collider to the gap; its mean contains their sum until all colliders have been
+/// added.
 void add_gap(std::span<const Vec3f> positions, const Collider& collider, double thickness, ContactGap& gap) {
     std::vector<Contact> contacts(positions.size());
     contacts_batch(collider, positions, static_cast<float>(2 * thickness), contacts);
@@ -128,22 +129,22 @@ double farthest_from_one(std::initializer_list<double> stretches) {
     return farthest;
 }
 
-/// Of the parts of a deformable between where they are at rest and where they are.
+/// The stretches of the parts of a deformable from their rest positions to their present positions.
 class Stretches {
   public:
     explicit Stretches(const Deformable& deformable)
         : now_(deformable.positions),
           rest_(deformable.rest_positions.empty() ? deformable.positions : deformable.rest_positions) {}
 
-    /// None of parts without length at rest.
+    /// None for a part without length at rest.
     std::optional<double> of_edge(std::uint32_t a, std::uint32_t b) const {
         const double rest = length(edge(rest_, a, b));
         if (!(rest > 0)) return std::nullopt;
         return farthest_from_one({length(edge(now_, a, b)) / rest});
     }
 
-    /// None of one without area at rest. The squares of the stretches are the eigenvalues of F^T F, which in
-    /// axes along the first edge and across it are those of a symmetric matrix of 2 x 2.
+    /// None for a triangle without area at rest. The squares of the stretches are the eigenvalues of F^T F, a
+    /// symmetric 2 x 2 matrix in axes along the first edge and across it.
     std::optional<double> of_triangle(const Triangle& face) const {
         const auto& [a, b, c] = face;
         const Vec3d rest_b = edge(rest_, a, b), rest_c = edge(rest_, a, c);

@@ -11,7 +11,7 @@
 #include <string_view>
 #include <vector>
 
-/// A JSON value to be written. Keys keep their order. Only json.cpp includes the library behind it, which
+/// A JSON value to be written. Keys keep their order. Only json.cpp includes the underlying library, which
 /// takes seconds to compile.
 class Json {
   public:
@@ -19,7 +19,7 @@ class Json {
 
     Json(std::nullptr_t = nullptr); ///< null
     Json(bool value);
-    Json(double value); ///< null where it is not finite
+    Json(double value); ///< null if it is not finite
     Json(std::string_view value);
     Json(const std::string& value) : Json(std::string_view(value)) {}
     Json(const char* value) : Json(std::string_view(value)) {}
@@ -53,7 +53,8 @@ class Json {
     /// @pre all exist
     Json part(std::initializer_list<const char*> keys) const;
 
-    // As text. Strings need not be UTF-8, as names of files are not; bytes that are not are replaced.
+    // The value as text. Strings need not be UTF-8, since names of files may not be; invalid bytes are
+    // replaced.
     std::string one_line() const;
     std::string indented() const; ///< ends with a newline
 

@@ -7,7 +7,7 @@
 
 namespace {
 
-/// The value of the first line "key ... separator value" of a file of the system, or "unknown".
+/// The value of the first line "key ... separator value" of a system file, or "unknown".
 std::string value_of(const char* path, const std::string& key, char separator) {
     std::ifstream file(path);
     for (std::string line; std::getline(file, line);) {

@@ -24,7 +24,7 @@ std::optional<std::size_t> parse_byte_count(std::string_view text) {
                                                               {"KiB", 1024},
                                                               {"MiB", 1024 * 1024},
                                                               {"GiB", 1024 * 1024 * 1024}};
-    constexpr double kMost = 1e15; // still fits a number of bytes
+    constexpr double kMost = 1e15; // still fits into a number of bytes
     double number = 0;
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
     if (error != std::errc{}) return {};
@@ -59,7 +59,7 @@ CLI::Option* add_option(CLI::App& app, const std::string& name, const ArgumentTa
             } else if constexpr (std::is_pointer_v<Variable>) {
                 return app.add_option(name, *variable, description);
             }
-            return nullptr; // the function, dealt with above
+            return nullptr; // the function, which was handled above
         },
         target);
 }
@@ -83,7 +83,7 @@ ArgumentTarget parser_of(char separator, std::initializer_list<T*> numbers) {
     };
 }
 
-/// The one that a mistyped word may stand for; nothing where none is like it.
+/// The word for which a mistyped word may stand; nothing if none is similar.
 std::optional<std::string> nearest_of(const std::vector<std::string>& words, const std::string& mistyped) {
     const auto distance = [&](const std::string& word) { return echinus::edit_distance(mistyped, word); };
     const auto nearest = std::min_element(
@@ -99,7 +99,7 @@ std::vector<std::string> command_names(const CLI::App& app) {
     return names;
 }
 
-/// With those of its groups.
+/// The names of a command's options, including those of its groups.
 std::vector<std::string> option_names(const CLI::App& app) {
     std::vector<std::string> names;
     for (const CLI::Option* option :
@@ -127,8 +127,8 @@ std::string type_of_option(const CLI::App& command, const std::string& name) {
     return {};
 }
 
-/// Of a command or an option that does not exist, says what is near it, and which commands do; nothing where
-/// all exist that were given. CLI11 only says that words were left over.
+/// For a command or an option that does not exist, names a similar one and the existing commands; nothing if
+/// all given ones exist. CLI11 only reports that words were left over.
 std::optional<std::string> sentence_about_unknown(const CLI::App& app) {
     const CLI::App& command = innermost(app);
     for (const std::string& word : app.remaining(true)) {
@@ -223,7 +223,8 @@ Command Command::add_command(const std::string& name, const std::string& descrip
 }
 
 void Command::require_command(const std::string& noun) const {
-    app_->require_subcommand(0, 1); // a missing one is refused here: CLI11 would not report a misspelt one
+    // A missing command is refused here, because CLI11 would not report a misspelt one.
+    app_->require_subcommand(0, 1);
     app_->callback([app = app_, noun] {
         if (app->get_subcommands().empty()) throw WrongUse(noun + " is required");
     });
@@ -304,17 +305,17 @@ std::string Program::given_command() const {
 
 std::optional<std::string> Program::run(const std::vector<std::string>& arguments) {
     try {
-        app_->parse(
-            std::vector<std::string>(arguments.rbegin(), arguments.rend())); // CLI11 wants the last first
+        // CLI11 expects the arguments in reverse order.
+        app_->parse(std::vector<std::string>(arguments.rbegin(), arguments.rend()));
         return std::nullopt;
     } catch (const CLI::Success& help_or_version) {
         std::ostringstream text;
         app_->exit(help_or_version, text, text);
-        return text.str().ends_with('\n') ? text.str() : text.str() + "\n"; // forgotten in nested commands
+        return text.str().ends_with('\n') ? text.str() : text.str() + "\n"; // missing in nested commands
     } catch (const CLI::ConversionError& error) {
         throw WrongUse(sentence_about_value(*app_, error.what()));
     } catch (const CLI::ParseError& error) {
-        // A mistyped option may be the one that is missing.
+        // The option that is reported missing may be a mistyped one.
         throw WrongUse(sentence_about_unknown(*app_).value_or(error.what()));
     }
 }

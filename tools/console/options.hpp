@@ -29,9 +29,9 @@ class WrongUse : public std::runtime_error {
         : std::runtime_error(option + ": " + finding) {}
 };
 
-/// Where the argument of an option goes: a variable, which must outlive the parsing, or a function that is
-/// given the text and returns false, or throws WrongUse with a better sentence, when it cannot use it. A list
-/// takes one argument or more.
+/// The target of an option's argument: a variable, which must outlive the parsing, or a function that
+/// receives the text and, if it cannot use it, returns false or throws WrongUse with a better sentence. A
+/// list accepts one or more arguments.
 using ArgumentTarget =
     std::variant<std::string*, std::filesystem::path*, std::vector<std::filesystem::path>*, double*, float*,
                  std::uint32_t*, std::uint64_t*, std::optional<double>*, std::optional<std::uint32_t>*,
@@ -46,8 +46,8 @@ class Option {
     /// Whole numbers from `least` to `most` only.
     Option range(std::uint64_t least, std::uint64_t most) const;
     Option not_empty() const;
-    /// A file's name that ends so, in whatever case, if it has an ending at all; - too. @param ending  as
-    /// ".png"
+    /// Accepts only file names with this extension, in upper or lower case, names without an extension, and
+    /// "-". @param ending  for instance ".png"
     Option ends_in(const std::string& ending) const;
     Option excludes(const std::string& other_option) const;
     /// The argument's name in the help.
@@ -57,7 +57,7 @@ class Option {
     Option default_text(const std::string& text) const;
 
     bool given() const;
-    /// Its name in sentences: "--json".
+    /// The option's name in sentences: "--json".
     std::string name() const;
 
   private:
@@ -70,13 +70,13 @@ class Command {
     explicit Command(CLI::App* app) : app_(app) {}
 
     Command add_command(const std::string& name, const std::string& description) const;
-    /// Wrong use when no subcommand is given; the sentence is "NOUN is required".
+    /// Makes it wrong use to give no subcommand; the sentence is "NOUN is required".
     void require_command(const std::string& noun) const;
     Command add_group(const std::string& title) const;
-    /// A name without dashes is a positional argument.
+    /// A name without dashes adds a positional argument.
     Option add(const std::string& name, ArgumentTarget target, const std::string& description = "") const;
     Option add_flag(const std::string& name, bool& variable, const std::string& description) const;
-    /// An option of earlier versions, which is wrong use: "NAME is now SUCCESSOR". The help leaves it out.
+    /// Adds an option of earlier versions, whose use is refused: "NAME is now SUCCESSOR". The help omits it.
     void add_former(const std::string& name, const std::string& successor) const;
     /// A number of bytes with its unit, such as 300KB.
     Option add_byte_count(const std::string& name, std::size_t& variable,
@@ -107,9 +107,9 @@ class Program {
     void add_version(const std::string& text);
     /// The program and the commands that were given, such as "echinus mesh torus".
     std::string given_command() const;
-    /// Parses the arguments behind the program's name and runs the actions of the commands that they name.
-    /// @returns the help or version to print, where it was asked for
-    /// @throws WrongUse, and what the actions throw
+    /// Parses the arguments after the program's name and runs the actions of the commands that they name.
+    /// @returns the help or version to print, if it was requested
+    /// @throws WrongUse, and the errors of the actions
     std::optional<std::string> run(const std::vector<std::string>& arguments);
 
   private:

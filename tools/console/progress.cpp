@@ -15,7 +15,7 @@ ProgressBar::~ProgressBar() {
 }
 
 void ProgressBar::operator()(double fraction) {
-    // Ten times a second is smooth enough to watch and too seldom to cost anything.
+    // Ten times a second is smooth enough to watch and too seldom to cost noticeable time.
     constexpr auto kRedrawInterval = std::chrono::milliseconds(100);
     constexpr int kWidth = 40;
     if (!on_terminal_) return;

@@ -4,7 +4,7 @@
 #include <optional>
 #include <string>
 
-/// A bar on standard error that shows how much of a long task is done, and nothing at all when standard error
+/// A bar on standard error that shows how much of a long task is done, and nothing at all if standard error
 /// is not a terminal. A function object, so that it can be passed as any progress callback.
 class ProgressBar {
   public:
@@ -14,7 +14,7 @@ class ProgressBar {
     /// Erases the bar, so that further output starts on a clean line.
     ~ProgressBar();
 
-    /// @param fraction  of the task that is done, 0 to 1; may be called at any rate
+    /// @param fraction  the completed share of the task, 0 to 1; may be called at any rate
     void operator()(double fraction);
 
   private:

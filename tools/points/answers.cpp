@@ -24,7 +24,7 @@ void in_file(const Vec3f& point, const Vec3d& origin, const Use& use) {
         use(Vec3d(point) + origin);
 }
 
-/// -1: the map does not know the face.
+/// -1 if the map does not know the face.
 std::int32_t number_in_file(std::uint32_t face) {
     return static_cast<std::int32_t>(face);
 }

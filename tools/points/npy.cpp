@@ -15,8 +15,8 @@ namespace {
 
 constexpr std::string_view kMagic = "\x93NUMPY";
 
-/// Reads the header's text, a Python dict of which the format allows just this much:
-/// {'descr': STRING or [LIST], 'fortran_order': True or False, 'shape': (COUNT, ...), }
+/// Reads the header's text, a Python dict of which the format allows only this form: {'descr': STRING or
+/// [LIST], 'fortran_order': True or False, 'shape': (COUNT, ...), }
 class DictReader {
   public:
     DictReader(const Input& input, std::string_view text) : input_(input), rest_(text) {}
@@ -89,7 +89,7 @@ class DictReader {
         return text;
     }
 
-    /// The fields of a structured type, brackets balanced, as they stand.
+    /// The fields of a structured type as they are in the text, with balanced brackets.
     std::string read_list() {
         std::size_t depth = 0;
         for (std::size_t i = 0; i < rest_.size(); ++i) {
@@ -156,7 +156,8 @@ std::size_t read_dict_size(Input& input) {
 } // namespace
 
 NpyHeader read_npy_header(Input& input) {
-    // Ours have some 60 bytes; NumPy itself refuses more than 10 000 from sources that it does not trust.
+    // Our own headers have about 60 bytes; NumPy itself refuses more than 10 000 from sources that it does
+    // not trust.
     constexpr std::size_t kMaxDictSize = 65'535;
     std::array<char, kMagic.size()> magic{};
     const std::size_t magic_size = input.read(magic.data(), magic.size());

@@ -58,7 +58,7 @@ bool holds_names(std::string_view line) {
     return column_count == 3 && begins_like_name(line);
 }
 
-/// The remedy for a line that is no point; empty where it does not show.
+/// The remedy for a line that is not a point; empty if none is apparent.
 std::string remedy_for(std::string_view line) {
     const bool has_commas = line.find(',') != std::string_view::npos;
     if (line.find(';') != std::string_view::npos)

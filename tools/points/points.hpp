@@ -14,17 +14,17 @@
 #include <string_view>
 #include <vector>
 
-/// Points from a file, handed out in order, block by block.
+/// Points from a file, returned in order, block by block.
 class PointSource {
   public:
     virtual ~PointSource() = default;
 
-    /// How many there are in all.
+    /// The total number of points.
     virtual std::uint64_t count() const = 0;
-    /// Fills the block as far as points are left; gives how many that were, 0 at the end.
-    /// @throws echinus::Error when the file turns out to hold fewer or more than it promised
+    /// Fills the block with the next points; returns how many there were, 0 at the end.
+    /// @throws echinus::Error if the file contains fewer or more points than its header declares
     virtual std::size_t read(std::span<echinus::Vec3d> block) = 0;
-    /// Do they come as floats, and so in steps where they are large?
+    /// Are the points stored as floats, whose spacing is coarse for large coordinates?
     virtual bool holds_floats() const { return false; }
 };
 
@@ -33,28 +33,28 @@ enum class TableFormat { Npy, Csv };
 /// The most points of a file that is read into memory whole, since a pipe may have no end.
 inline constexpr std::uint64_t kMaxPointsInMemory = 100'000'000;
 
-/// By the ending of a file's name (.npy, .csv), otherwise by the first byte.
+/// The format by the extension of a file's name (.npy, .csv), otherwise by the first byte.
 TableFormat format_of_points(const std::filesystem::path& path, Input& input);
 
 /// Points from an array [n, 3] in a .npy file: float32 or float64; C or Fortran order. The latter is read
 /// into memory whole.
-/// @throws echinus::Error WrongFormat or Damaged; Unreadable when more than kMaxPointsInMemory would have to
-/// be in memory
+/// @throws echinus::Error WrongFormat or Damaged; Unreadable if more than kMaxPointsInMemory would have to be
+/// in memory
 std::unique_ptr<PointSource> open_npy_points(std::unique_ptr<Input> input);
 
 /// Points from lines "x,y,z", read into memory whole. Empty lines and lines that begin with # are skipped,
-/// and so is the first line when it holds names: such a file without any other line has no points.
+/// and so is the first line if it contains names: a file with only that line has no points.
 /// @throws echinus::Error Damaged with the number of the line; WrongFormat for a file without lines;
 /// Unreadable for more than kMaxPointsInMemory
 std::unique_ptr<PointSource> open_csv_points(std::unique_ptr<Input> input);
 
-/// Of a file's text, as much as can be shown within a line of a terminal, in quotes.
+/// As much of a file's text as fits on a line of a terminal, in quotes.
 std::string excerpt(std::string_view text);
 
 /// Refuses more points than kMaxPointsInMemory.
 void require_room_for(const Input& input, std::uint64_t count);
 
-/// Points that lie in memory.
+/// Points that are in memory.
 class PointList final : public PointSource {
   public:
     explicit PointList(std::vector<echinus::Vec3d> points, bool holds_floats = false)
@@ -89,20 +89,20 @@ NpyHeader read_npy_header(Input& input);
 /// Python literal `descr`.
 std::string format_npy_header(const std::string& descr, std::uint64_t element_count);
 
-/// The answers about some points. What was not asked for is empty.
+/// The answers about some points. Answers that were not requested are empty.
 struct Answers {
     std::span<const echinus::Contact> contacts = {};
     std::span<const float> signed_distances = {}, winding_numbers = {};
 };
 
-/// Which of them there are, besides contacts.
+/// Which answers are requested, in addition to contacts.
 struct AnswerFields {
     bool signed_distance = false, winding_number = false;
-    echinus::Vec3d origin{}; ///< of the map; where it is not 0, contact points are written as doubles
+    echinus::Vec3d origin{}; ///< of the map; if it is not 0, contact points are written as doubles
 };
 
-/// Where the answers of a query go, in the order of the points, block by block. Nothing is left unless
-/// finish() is reached.
+/// Writes the answers of a query in the order of the points, block by block. Nothing is left unless finish()
+/// is called.
 class AnswerWriter {
   public:
     virtual ~AnswerWriter() = default;
@@ -111,10 +111,10 @@ class AnswerWriter {
     virtual void finish() = 0;
 };
 
-/// Opens a table of `count` answers. As .npy: a structured array that numpy.load takes without pickle, its
+/// Opens a table of `count` answers. As .npy: a structured array that numpy.load() reads without pickle, its
 /// fields packed: inside u1, depth f4, normal 3 f4, point 3 f4 (or 3 f8: AnswerFields::origin), face i4,
-/// certain u1, and f4 for signed_distance and winding_number where they are wanted. As .csv: a line of names
-/// and one line for each answer, floats with as many digits as read back to the same bits.
+/// certain u1, and f4 for signed_distance and winding_number if they are requested. As .csv: a line of names
+/// and one line for each answer, floats with enough digits to restore the same bits.
 /// @throws echinus::Error Unwritable
 std::unique_ptr<AnswerWriter> open_answers(const std::filesystem::path& target, TableFormat format,
                                            std::uint64_t count, AnswerFields fields);

@@ -29,7 +29,7 @@ namespace {
 
 // ---- Bytes in a document ----
 
-/// Compresses bytes as they come, in the zlib format (RFC 1950), which browsers call "deflate".
+/// Compresses bytes as they are added, in the zlib format (RFC 1950), which browsers call "deflate".
 ///
 /// Looks for runs of equal bytes only: differences between frames have few other repetitions, and it takes a
 /// quarter of the time (10 000 particles for 659 frames: 0.6 s and 7.21 MB; with all matches 2.2 s, 7.33 MB).
@@ -107,7 +107,8 @@ std::string base64(std::span<const std::uint8_t> bytes) {
 /// rounded to a lattice; a coordinate is a whole number of its steps, of which the page keeps 16 bits; the
 /// rest follows from the frame's origin, since no frame is larger than 2^16 - 1 steps.
 struct Lattice {
-    double step; ///< units; a coordinate is wrong by half of it at most, and the rounding to float
+    double step; ///< in the scene's unit; a coordinate is inexact by at most half of it and the rounding to
+                 ///< float
 
     std::int64_t index_of(float coordinate) const;
 };
@@ -134,7 +135,7 @@ Range range_of(const RecordedFrame& frame, std::size_t axis) {
 
 using Coordinates = std::vector<std::uint16_t>;
 
-/// Axis by axis, modulo 2^16.
+/// The coordinates of a frame in steps, axis by axis, modulo 2^16.
 Coordinates coordinates_of(const RecordedFrame& frame, const Lattice& lattice) {
     Coordinates result;
     result.reserve(3 * frame.positions.size());
@@ -144,7 +145,7 @@ Coordinates coordinates_of(const RecordedFrame& frame, const Lattice& lattice) {
     return result;
 }
 
-/// 0, -1, 1, -2 ... to 0, 1, 2, 3 ...
+/// Maps 0, -1, 1, -2 ... to 0, 1, 2, 3 ...
 std::uint16_t folded(std::uint16_t difference) {
     const bool negative = (difference & 0x8000U) != 0;
     return static_cast<std::uint16_t>(difference << 1U ^ (negative ? 0xffffU : 0U));
@@ -154,10 +155,10 @@ std::int64_t Lattice::index_of(float coordinate) const {
     return std::llround(coordinate / step);
 }
 
-/// The finest lattice on which each frame has room: the step is 1 / 65534 of the largest extent of any frame
+/// The finest lattice into which each frame fits: the step is 1 / 65534 of the largest extent of any frame
 /// along any axis.
 Lattice lattice_of(std::span<const RecordedFrame> frames) {
-    constexpr double kSteps = 65534; // and one more by rounding at both ends
+    constexpr double kSteps = 65534; // rounding at both ends may add one more
     constexpr double kMostIndex = 1LL << 50U;
     double extent = 0, farthest = 0;
     for (const RecordedFrame& frame : frames) {
@@ -167,7 +168,8 @@ Lattice lattice_of(std::span<const RecordedFrame> frames) {
             farthest = std::max({farthest, std::abs(double{range.least}), std::abs(double{range.greatest})});
         }
     }
-    // A cloth that is a dot far away must not count in steps beyond what a browser's numbers hold.
+    // For a small cloth that is far away, coordinates in steps must not exceed what a browser's numbers can
+    // represent.
     const double step = std::max(extent / kSteps, farthest / kMostIndex);
     return {step > 0 ? step : 1};
 }
@@ -204,7 +206,7 @@ void add_motion(Deflater& deflater, std::span<const RecordedFrame> frames, const
 
 constexpr std::string_view kPlace = "<!-- recording -->";
 
-/// Beside the program, so that an installed tree may be moved.
+/// The player's path relative to the program, so that an installation may be moved.
 fs::path installed_player() {
     return (system::program_path().parent_path() / ECHINUS_DATA_FOLDER / "player.html").lexically_normal();
 }
@@ -227,7 +229,7 @@ std::string read_player(const fs::path& path) {
 
 // ---- Its contents ----
 
-/// Of a recording with one collider, and with several.
+/// The format numbers of a recording with one collider, and with several.
 constexpr int kFormat = 1, kFormatOfSeveral = 2;
 static_assert(std::endian::native == std::endian::little, "shapes are written as they lie in memory");
 
@@ -273,7 +275,7 @@ Json frames_of(const Recording& recording, const Lattice& lattice, bool moves) {
     return frames;
 }
 
-/// All colliders, each where it starts.
+/// The bounding sphere of all colliders in their initial poses.
 Sphere sphere_of(const PlayedSimulation& played) {
     if (played.colliders.size() == 1) return inspect(played.colliders.front()).bounding_sphere;
     TriangleMesh all;

@@ -15,7 +15,7 @@
 /// The page that plays recordings, as built by `scripts/web`, cut in two at the place for a recording.
 class Player {
   public:
-    /// @param path  empty: the one that is installed with this program
+    /// @param path  empty for the player installed with this program
     /// @throws echinus::Error Unreadable or WrongFormat; the sentence says how to get a player
     explicit Player(std::filesystem::path path);
 
@@ -34,7 +34,7 @@ struct PlayedSimulation {
     std::string scene_name; ///< without folders, since pages are shared
     std::string model_name;
     std::string notice;                               ///< of the model's source; may be empty
-    std::span<const echinus::TriangleMesh> colliders; ///< scaled, not moved
+    std::span<const echinus::TriangleMesh> colliders; ///< scaled, but not moved
 };
 
 /// Writes one HTML document that plays the simulation and loads nothing from elsewhere: the player, and in it

@@ -12,12 +12,12 @@ using namespace echinus;
 
 namespace {
 
-/// Positions of particles in a page. A browser keeps each in 6 bytes, and its share of a text of at most 2^29
-/// characters, the longest that Chromium has: 8 characters where nothing compresses.
+/// The most positions of particles in a page. For each, a browser needs 6 bytes, and a share of a text of at
+/// most 2^29 characters, which is the longest in Chromium: 8 characters if nothing compresses.
 constexpr std::uint64_t kMostPositions = 64'000'000;
 
 /// An open model has no inside.
-/// @param passes  particles that the collider lets through, as let_through() has them
+/// @param passes  particles that the collider lets through, as returned by let_through()
 std::size_t count_inside(const ExactMap& model, const Collider& collider, std::span<const Vec3f> positions,
                          std::span<const std::uint8_t> passes) {
     if (!model.view().border.empty()) return 0;
@@ -29,7 +29,7 @@ std::size_t count_inside(const ExactMap& model, const Collider& collider, std::s
     return static_cast<std::size_t>(std::count(inside.begin(), inside.end(), 1));
 }
 
-/// The frames that are due, and the last.
+/// The number of frames that are due, and the last frame.
 std::uint64_t most_recorded(std::uint32_t frame_limit, std::uint64_t stride) {
     return frame_limit / stride + 2;
 }

@@ -19,7 +19,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// Reads values from report.json, and names a wrong one.
+/// Reads values from report.json, and names a wrong value.
 class ReportReader {
   public:
     explicit ReportReader(const fs::path& path) : name_(path.string()) {
@@ -74,7 +74,7 @@ RigidTransform read_transform(const ReportReader& reader, const json& pose) {
     return {Rotation{q[0], q[1], q[2], q[3]}.normalised(), {x, y, z}};
 }
 
-/// Runs of particles: first and last.
+/// Reads runs of particles, each given by its first and last.
 std::vector<std::uint8_t> read_let_through(const ReportReader& reader, const json& collider,
                                            std::size_t particle_count) {
     if (!collider.contains("lets_through")) return {};
@@ -128,7 +128,7 @@ double difference(const std::vector<Vec3f>& a, const std::vector<Vec3f>& b) {
     return sum / static_cast<double>(a.size()) + kWeightOfCommonMotion * length(common);
 }
 
-/// Samples from the first to the last, evenly spread, so many that a choice among them is as good as one
+/// Evenly spaced samples from the first to the last, enough for a choice among them to be as good as one
 /// among all.
 std::vector<std::size_t> candidates(std::size_t sample_count) {
     constexpr std::size_t kMost = 500;
@@ -153,7 +153,7 @@ SimulationFolder::SimulationFolder(const fs::path& folder)
 
 void SimulationFolder::read_report(const fs::path& path) {
     const ReportReader reader(path);
-    // Folders from before there were several have one.
+    // Folders from earlier versions, which had no "colliders", contain one collider.
     if (!reader.root().contains("colliders"))
         colliders_.push_back(read_collider(reader, reader.member(reader.root(), "collider"),
                                            path.parent_path(), cache_.point_count()));
@@ -222,7 +222,7 @@ std::vector<std::size_t> choose_moments(const SimulationFolder& folder, std::siz
         for (std::size_t i = 0; i < samples.size(); ++i)
             distance_to_chosen[i] =
                 std::min(distance_to_chosen[i], difference(positions, folder.cloth_positions(samples[i])));
-        distance_to_chosen[candidate] = -1; // not again, also where nothing moves
+        distance_to_chosen[candidate] = -1; // not to be chosen again, even if nothing moves
     };
 
     choose(samples.size() - 1);

@@ -21,9 +21,9 @@ struct SavedCollider {
 
     echinus::TriangleMesh mesh;
     std::vector<Pose> poses; ///< ascending frames, at least one
-    /// Of its vertices where it deforms, as long as the cloth's; else null.
+    /// The cache of its vertices, with as many samples as the cloth's; null if it does not deform.
     std::shared_ptr<const echinus::PointCacheReader> cache;
-    /// [particle_count of the cloth] 1 for the particles that it lets through, or none.
+    /// [particle_count of the cloth] 1 for the particles that it lets through, or empty.
     std::vector<std::uint8_t> passes;
 };
 
@@ -37,19 +37,19 @@ class SimulationFolder {
 
     std::size_t sample_count() const { return cache_.sample_count(); }
     double frame_of(std::size_t sample) const { return cache_.frame_of(sample); }
-    /// The sample taken at a frame, or else nearest to it.
-    /// @throws echinus::Error InvalidOptions when no sample lies within half the distance of two samples
+    /// The sample taken at a frame, or the nearest one.
+    /// @throws echinus::Error InvalidOptions if no sample is within half the distance between two samples
     std::size_t sample_at(std::int64_t frame) const;
 
     std::vector<echinus::Vec3f> cloth_positions(std::size_t sample) const { return cache_.positions(sample); }
     echinus::MeshAndEdges cloth(std::size_t sample) const;
     /// All colliders as one mesh, in the world, at their poses in that sample.
     echinus::TriangleMesh colliders(std::size_t sample) const;
-    /// Drops the pairs of a face of the cloth's surface and one of colliders() that need not keep apart.
+    /// Drops the pairs of a face of the cloth's surface and one of colliders() that need not be kept apart.
     void drop_let_through(const std::vector<echinus::Triangle>& surface,
                           std::vector<echinus::FacePair>& pairs) const;
 
-    /// Against gravity; +z where there is none.
+    /// The direction against gravity; +z if there is none.
     const echinus::Vec3d& up() const { return up_; }
     /// The frame at which the cloth came to rest, if it did.
     const std::optional<double>& rest_frame() const { return rest_frame_; }

@@ -18,7 +18,7 @@ Vec3f unit_or_zero(const Vec3f& v) {
     return size > 0 ? v * (1 / size) : Vec3f{};
 }
 
-/// Any direction across another one.
+/// Any direction perpendicular to another one.
 Vec3f across(const Vec3f& direction) {
     const Vec3f axis = std::fabs(direction.z) < 0.7F ? Vec3f{0, 0, 1} : Vec3f{1, 0, 0};
     return unit_or_zero(cross(direction, axis));
