@@ -15,8 +15,8 @@
 #include <utility>
 #include <vector>
 
-/// Every function of the C interface does this at the border: catch exceptions, check what the types of C
-/// cannot rule out, and convert.
+/// What every function of the C interface does at the boundary between C and C++: it catches exceptions,
+/// checks what the types of C cannot exclude, and converts values.
 namespace echinus::c {
 
 /// A wrong argument of a C function; the sentence begins with the argument's name.
@@ -31,8 +31,8 @@ inline void require(bool holds, const char* sentence) {
 
 // ---- Errors
 
-/// Turns the current exception into a status, and records its sentence for echinus_last_error(). Call from a
-/// handler.
+/// Turns the current exception into a status, and records its sentence for echinus_last_error(). To be called
+/// from a handler.
 echinus_status note_error(const char* function) noexcept;
 
 /// The status of `body`.
@@ -58,7 +58,7 @@ T& at(T* pointer, const char* name) {
     return *pointer;
 }
 
-/// Puts a new handle around what `body` returns into *result, or null when it throws.
+/// Stores a new handle of the value that `body` returns in *result, or null if it throws.
 template <typename Handle, typename Body>
 echinus_status make(const char* function, Handle** result, const Body& body) noexcept {
     if (result != nullptr) *result = nullptr;
@@ -68,14 +68,14 @@ echinus_status make(const char* function, Handle** result, const Body& body) noe
     });
 }
 
-/// @throws WrongArgument beyond the last
+/// @throws WrongArgument for an index that is too large
 void require_index(std::size_t index, std::size_t count, const char* name);
 
 /// The number of elements that `count` items of `width` elements each make.
-/// @throws WrongArgument where it overflows
+/// @throws WrongArgument if the product overflows
 std::size_t times(std::size_t count, std::size_t width, const char* name);
 
-/// @throws WrongArgument for null where there are elements, and for more than all memory
+/// @throws WrongArgument for null if there are elements, and for a size that exceeds all memory
 template <typename T>
 std::span<T> values_at(T* first, std::size_t count, const char* name) {
     if (count == 0) return {};
@@ -84,10 +84,10 @@ std::span<T> values_at(T* first, std::size_t count, const char* name) {
     return {first, count};
 }
 
-/// A batch of values of whole floats, in the caller's memory.
-/// @param stride  in bytes; 0: one after the other
+/// A batch of values that consist of floats, in the caller's memory.
+/// @param stride  in bytes; 0 for contiguous values
 /// @throws WrongArgument for null, a stride that is too small or not a multiple of 4, an address that is not
-/// one, and a batch that is larger than all memory
+/// a multiple of 4, and a batch that exceeds all memory
 template <typename T>
 StridedSpan<const T> batch_at(const float* first, std::size_t count, std::size_t stride, const char* name) {
     if (count == 0) return {};
@@ -118,8 +118,8 @@ void put_vector(const Vec3<T>& vector, T* numbers) {
     numbers[2] = vector.z;
 }
 
-/// An enumerator of C++ from one of C with the same numbers. Read as an integer: the caller may have put any
-/// number there.
+/// An enumerator of C++ from one of C with the same numbers. It is read as an integer, since the caller may
+/// have stored any number.
 /// @throws WrongArgument for one beyond `last`
 template <typename Enum, typename CEnum>
 Enum enumerator(const CEnum& value, Enum last, const char* name) {
@@ -142,17 +142,18 @@ bool flag(Integer value, const char* name) {
 
 // ---- Structs that begin with their size
 
-/// The size of a struct in the first version; one that has grown since is named where it is used.
+/// The size of a struct in its first version; a struct that has grown since passes its first size explicitly.
 template <typename Struct>
 inline constexpr std::size_t kFirstSize = sizeof(Struct);
 
-/// @throws WrongArgument when the size of a struct of the caller's cannot be right
+/// @throws WrongArgument if the size of a caller's struct cannot be right
 void require_size(std::size_t size, std::size_t known_size, std::size_t first_size, const char* name);
 
-/// @throws WrongArgument when a byte after the known ones is set: a member that this library does not have
+/// @throws WrongArgument if a byte after the known ones is set, which belongs to a member that this library
+/// does not have
 void require_zero(const void* first, std::size_t known_size, std::size_t size, const char* name);
 
-/// Refuses a value to which a later version may give a meaning, which this one would not heed.
+/// Refuses a value to which a later version may give a meaning that this version would ignore.
 /// @throws WrongArgument unless it is 0
 template <typename Integer>
 void require_unused(Integer reserved) {
@@ -166,10 +167,10 @@ inline std::size_t common_size(std::size_t size, std::size_t known_size) {
     return size < known_size ? size : known_size;
 }
 
-/// A copy of a struct of the caller's, which may be older or newer than the library's: members that it lacks
-/// keep the value that they have in `defaults`.
-/// @pre Struct has no padding at its end, where an older header would leave what a newer one takes for a
-/// member
+/// A copy of the caller's struct, which may be older or newer than the library's: members that it lacks keep
+/// their value in `defaults`.
+/// @pre Struct has no padding at its end, since the bytes that an older header leaves there would be taken
+/// for a member by a newer one
 template <typename Struct>
 Struct read_struct(const Struct* given, const Struct& defaults, const char* name) {
     const std::size_t size = at(given, name).size;
@@ -180,7 +181,8 @@ Struct read_struct(const Struct* given, const Struct& defaults, const char* name
     return result;
 }
 
-/// Writes what the caller's struct has room for; members that the library does not have become zero.
+/// Writes the members for which the caller's struct has room; members that the library does not have become
+/// zero.
 template <typename Struct>
 void write_struct(Struct* result, Struct value, const char* name) {
     const std::size_t size = at(result, name).size;
@@ -199,13 +201,13 @@ void init_struct(Struct* result, std::size_t size, Struct defaults) noexcept {
     std::memcpy(result, &defaults, common_size(size, sizeof(Struct)));
 }
 
-/// No padding at the end, or after the member before it: see read_struct().
+/// Asserts that there is no padding after the last member; see read_struct().
 #define ECHINUS_REQUIRE_NO_PADDING_AFTER(STRUCT, LAST)                                                       \
     static_assert(sizeof(STRUCT) == offsetof(STRUCT, LAST) + sizeof(STRUCT::LAST))
 
 } // namespace echinus::c
 
-// ---- The objects behind handles, C++ values as they are
+// ---- The objects behind handles: plain C++ values
 
 /// Holds arrays of any type.
 struct echinus_array {

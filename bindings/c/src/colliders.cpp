@@ -23,7 +23,7 @@ echinus_pose pose_to_c(const RigidTransform& pose) {
 RigidTransform checked_pose(const echinus_pose& pose, const char* name) {
     RigidTransform result = pose_from(pose);
     const Rotation& r = result.rotation;
-    // As a simulation does. Written so that NaN fails it.
+    // The same check as in a simulation. Written so that NaN is refused.
     constexpr double kTolerance = 1e-4;
     if (!(std::fabs(std::sqrt(r.w * r.w + r.x * r.x + r.y * r.y + r.z * r.z) - 1) <= kTolerance))
         throw WrongArgument(std::string(name) + ": the rotation is not of unit length");
@@ -40,7 +40,7 @@ std::vector<PoseKey> keys_from(std::span<const echinus_pose_key> keys) {
 
 namespace {
 
-/// Checks what pose_at() takes for granted.
+/// Checks the preconditions of pose_at().
 void require_valid(std::span<const echinus_pose_key> keys) {
     require(!keys.empty(), "there is no key");
     for (std::size_t i = 0; i < keys.size(); ++i) {

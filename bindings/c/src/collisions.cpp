@@ -26,7 +26,7 @@ void set_collider_pose(Collision* collision, std::size_t index, const echinus_po
 std::span<Vec3f> vectors_at(float* first, std::size_t count, const char* name) {
     return values_at(reinterpret_cast<Vec3f*>(first), count, name);
 }
-/// None where they are null.
+/// Empty if the pointer is null.
 template <typename T>
 std::span<T> optional_at(T* first, std::size_t count, const char* name) {
     return first == nullptr ? std::span<T>() : values_at(first, count, name);

@@ -1,4 +1,4 @@
-// The caller's own structures in place of maps.
+// The caller's own structures as maps.
 
 #include "handles.hpp"
 
@@ -30,7 +30,7 @@ class MapOfFunctions final : public CustomMap {
     static const float* floats(std::span<const Vec3f> points) {
         return reinterpret_cast<const float*>(points.data());
     }
-    /// To what C++ can hold: flags of 0 or 1, and a feature that exists.
+    /// Changes values to those that are valid in C++: flags of 0 or 1, and an existing feature.
     static void normalise(echinus_contact& contact) {
         contact.inside = contact.inside != 0 ? 1 : 0;
         contact.certain = contact.certain != 0 ? 1 : 0;

@@ -58,7 +58,7 @@ echinus_deformable_arrays arrays_of(const Deformable& deformable) {
 
 namespace {
 
-/// Values of C++ from those of C, which lie in memory as they do.
+/// C++ values from C values that have the same layout in memory.
 template <typename T, typename Given>
 std::vector<T> copy_of(const Given* first, std::size_t count, const char* name) {
     static_assert(sizeof(T) == sizeof(Given) && std::is_trivially_copyable_v<T>);
@@ -99,7 +99,7 @@ Deformable deformable_from(const echinus_deformable_arrays& arrays) {
     };
 }
 
-/// Refuses a vertex that is not there: it would be found in the next part.
+/// Refuses an index beyond the part's vertices, which would refer to the next part.
 /// @throws Error InvalidOptions
 void require_own_particles(const Deformable& part, std::size_t number) {
     const auto require_there = [&](std::uint32_t particle, const char* what) {

@@ -30,7 +30,7 @@ struct echinus_map_builder {
     echinus::ExactMapBuilder value;
 };
 
-/// Valid.
+/// Valid tetrahedra.
 struct echinus_tetrahedra {
     echinus::TetrahedralMesh value;
 };
@@ -39,14 +39,14 @@ struct echinus_deformable {
     echinus::Deformable value;
 };
 
-/// Has a sample of a vertex.
+/// Has at least one sample and one vertex.
 struct echinus_vertex_cache {
     echinus::VertexCache value;
 };
 
 struct echinus_scene {
     echinus::Scene value;
-    std::filesystem::path folder; ///< files of the scene may lie in it
+    std::filesystem::path folder; ///< the folder in which files of the scene may be
 };
 
 struct echinus_simulation {
@@ -55,9 +55,9 @@ struct echinus_simulation {
     }
 
     echinus::Simulation value;
-    /// [collider_count] For those who read a collider, as it was then.
+    /// [collider_count] The maps of colliders that the caller has read, as they were at that time.
     mutable std::vector<echinus_map> maps;
-    bool failed = false; ///< a step has; then it can only be read
+    bool failed = false; ///< whether a step has failed; the simulation can then only be read
 };
 
 namespace echinus::c {
@@ -68,12 +68,12 @@ namespace echinus::c {
 std::vector<Vec3f> points_from(const float* points, std::size_t count, std::size_t stride, const char* name);
 std::vector<Triangle> faces_from(const std::uint32_t* faces, std::size_t count, const char* name);
 
-/// The arrays of a deformable, in place.
+/// The arrays of a deformable, without copying.
 echinus_deformable_arrays arrays_of(const Deformable& deformable);
 
 // ---- Maps and their answers
 
-/// The layouts of the answers are those of C++, which are written in place.
+/// The answers have the layouts of C++, which writes them directly.
 static_assert(sizeof(echinus_contact) == sizeof(Contact) &&
               offsetof(echinus_contact, point) == offsetof(Contact, point) &&
               offsetof(echinus_contact, normal) == offsetof(Contact, normal) &&
@@ -89,8 +89,8 @@ static_assert(sizeof(echinus_sweep_hit) == sizeof(SweepHit) &&
               offsetof(echinus_sweep_hit, face) == offsetof(SweepHit, face) &&
               offsetof(echinus_sweep_hit, entering) == offsetof(SweepHit, entering));
 
-/// Calls a function of the caller's when it goes, once it was armed: until then what it releases is the
-/// caller's.
+/// Calls a function of the caller when it is destroyed, if it has been armed; until then the caller owns the
+/// resource.
 class Release {
   public:
     Release(void (*function)(void*), void* context) : function_(function), context_(context) {}
@@ -107,7 +107,7 @@ class Release {
     bool armed_ = false;
 };
 
-/// @throws WrongArgument for a map of another kind
+/// @throws WrongArgument for a map of a different kind
 const ExactMap& exact_map_at(const echinus_map* map);
 const DistanceMap& distance_map_at(const echinus_map* map);
 
@@ -124,7 +124,7 @@ void with_map(const echinus_map* map, const Body& body) {
     throw WrongArgument("map is a custom map, which only colliders can query");
 }
 
-/// A margin, a reach or another length to look for.
+/// A margin, a reach or another search distance.
 /// @throws WrongArgument unless it is 0 or more
 inline float not_negative(float length, const char* name) {
     if (!(length >= 0))
@@ -141,24 +141,24 @@ inline std::span<SweepHit> hits_at(echinus_sweep_hit* first, std::size_t count) 
 
 // ---- Colliders
 
-/// A pose as it is; the library checks it.
+/// A pose without checks; the library checks it.
 RigidTransform pose_from(const echinus_pose& pose);
 echinus_pose pose_to_c(const RigidTransform& pose);
 
 /// @throws WrongArgument unless it is finite and its rotation of unit length
 RigidTransform checked_pose(const echinus_pose& pose, const char* name);
 
-/// Keys as they are; a simulation checks them.
+/// Keys without checks; a simulation checks them.
 std::vector<PoseKey> keys_from(std::span<const echinus_pose_key> keys);
 
 /// A collider for queries, which do not check it.
-/// @throws WrongArgument for what a query must not get
+/// @throws WrongArgument for values that a query must not receive
 Collider collider_at(const echinus_collider* collider);
 
 /// A collider for a simulation, which checks it.
 /// @throws WrongArgument for a null map
 Collider collider_from(const echinus_collider& collider);
-/// The same of a row of the caller's structs, which may be larger than ours.
+/// The same for an array of the caller's structs, which may be larger than the library's.
 std::vector<Collider> colliders_from(const echinus_collider* first, std::size_t count);
 
 } // namespace echinus::c

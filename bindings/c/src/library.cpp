@@ -17,7 +17,8 @@ namespace echinus::c {
 
 namespace {
 
-/// The sentence of each thread. Of fixed size: when memory runs out, there is none for the sentence.
+/// The last error sentence of each thread. Its size is fixed, since there would be no memory for it after
+/// memory has run out.
 class Sentence {
   public:
     void set(std::string_view function, std::string_view text) {
@@ -26,7 +27,7 @@ class Sentence {
         add(function);
         if (!function.empty()) add(": ");
         add(text);
-        // Not cut in the middle of a character: bytes 10xxxxxx continue one.
+        // Do not cut in the middle of a character: bytes 10xxxxxx continue one.
         if (size_ == kCapacity)
             while (size_ > 0 && (static_cast<unsigned char>(bytes_[size_]) & 0xC0) == 0x80) --size_;
         bytes_[size_] = '\0';
@@ -37,7 +38,7 @@ class Sentence {
     static constexpr std::size_t kCapacity = 2047;
 
     void add(std::string_view text) {
-        // One byte more than is shown, so that set() sees whether it continues a character.
+        // One byte more than the visible text, so that set() sees whether it continues a character.
         const std::size_t room = sizeof bytes_ - size_;
         text.copy(bytes_ + size_, room);
         size_ = std::min(size_ + text.size(), kCapacity);
@@ -106,7 +107,7 @@ Vec3d finite_vector_at(const double* first, const char* name) {
 }
 
 void require_size(std::size_t size, std::size_t known_size, std::size_t first_size, const char* name) {
-    // The upper bound is there for a size that was never set.
+    // The upper bound detects a size that was never set.
     constexpr std::size_t kLargest = 4096;
     if (size >= first_size && size <= kLargest) return;
     throw WrongArgument("the size of " + std::string(name) + " is " + std::to_string(size) +
@@ -128,7 +129,7 @@ using namespace echinus;
 using namespace echinus::c;
 
 const char* echinus_status_name(echinus_status status) {
-    std::int32_t number = 0; // any number may have been put there
+    std::int32_t number = 0; // the caller may have stored any number
     std::memcpy(&number, &status, sizeof number);
     switch (number) {
     case ECHINUS_OK:

@@ -1,4 +1,4 @@
-// Maps: build, look at, destroy, write and read.
+// Maps: building, inspecting, destroying, writing and reading.
 
 #include "handles.hpp"
 #include "options.hpp"

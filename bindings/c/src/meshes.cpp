@@ -100,7 +100,7 @@ std::vector<std::uint32_t> dropped_faces(const RepairReport& report) {
     return result;
 }
 
-/// The array of a result that the caller may do without.
+/// The array for a result that the caller need not request.
 template <typename T>
 std::unique_ptr<echinus_array> array_unless_null(echinus_array** result, std::vector<T> values) {
     return result == nullptr ? nullptr : std::make_unique<echinus_array>(array_of(std::move(values)));

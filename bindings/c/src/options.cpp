@@ -1,4 +1,4 @@
-// Options of C as those of C++, and back; options.hpp has which member is which.
+// Converts the options of C to those of C++ and back; options.hpp relates their members.
 
 #include "options.hpp"
 
@@ -12,7 +12,7 @@ namespace echinus::c {
 
 namespace {
 
-/// Writes the members of C++ into those of C.
+/// Copies the members of C++ to those of C.
 struct ToC {
     template <typename T, typename Value, typename... Unused>
     requires std::is_arithmetic_v<T>
@@ -32,7 +32,7 @@ struct ToC {
     void operator()(const char*, double (&c)[3], const Vec3d& o, Limits) const { put_vector(o, c); }
     void operator()(const char*, echinus_pose& c, const RigidTransform& o) const { c = pose_to_c(o); }
 
-    /// Lists are empty by default, and no function gives those of a caller back.
+    /// Lists are empty by default, and no function returns those of a caller.
     template <typename T, typename List>
     void operator()(const char*, const T*& first, std::size_t& count, const List&) const {
         first = nullptr;
@@ -41,7 +41,7 @@ struct ToC {
     void reserved(auto& c) const { c = 0; }
 };
 
-/// Writes the members of C into those of C++. Ranges are checked by the library.
+/// Copies the members of C to those of C++. Ranges are checked by the library.
 struct FromC {
     template <typename T, typename Value, typename... Unused>
     requires std::is_arithmetic_v<T>
@@ -50,7 +50,7 @@ struct FromC {
             o = flag(c, ("options." + std::string(name)).c_str());
         else if constexpr (std::is_floating_point_v<T>)
             o = c;
-        else // of threads there are never more than an unsigned has
+        else // a number of threads always fits into an unsigned
             o = static_cast<Value>(std::min<std::uint64_t>(c, std::numeric_limits<Value>::max()));
     }
     template <typename CEnum, typename Enum>

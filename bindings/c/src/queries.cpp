@@ -11,7 +11,7 @@ echinus_status echinus_map_contains(const echinus_map* map, const float* points,
         with_map(map, [&](const auto& kind) {
             const auto batch = batch_at<Vec3f>(points, count, stride, "points");
             const std::span<uint8_t> answers = values_at(inside, count, "inside");
-            if (count == 1) // the same bits, without what is done once for a batch
+            if (count == 1) // the same bits, without the overhead of a batch
                 answers[0] = contains(kind.view(), batch[0]) ? 1 : 0;
             else
                 contains_batch(kind.view(), batch, answers, thread_count);

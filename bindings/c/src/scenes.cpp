@@ -1,4 +1,4 @@
-// Simulations as JSON.
+// Simulations from scenes in JSON.
 
 #include "border.hpp"
 #include "handles.hpp"
@@ -14,7 +14,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Where the meshes of a scene come from.
+/// Reads or generates the meshes of a scene.
 class Meshes {
   public:
     explicit Meshes(std::vector<fs::path> folders) : folders_(std::move(folders)) {}
@@ -25,7 +25,7 @@ class Meshes {
     TriangleMesh model(const SceneCollider& collider) const {
         return repair(std::visit(*this, collider.model), collider.repair).mesh;
     }
-    /// Empty where the collider has none.
+    /// The cache of a collider; empty if it has none.
     VertexCache cache(const SceneCollider& collider, const TriangleMesh& model) const {
         if (!collider.cache) return {};
         return read_vertex_cache(find_cache(*collider.cache, folders_), model,
@@ -44,8 +44,8 @@ class Meshes {
     }
 
   private:
-    /// Those of a file, or those that fill its surface; none of a generated shape, which is filled where the
-    /// deformable is made.
+    /// The tetrahedra of a file, or those that fill its surface; empty for a generated shape, which is filled
+    /// when the deformable is made.
     TetrahedralMesh tetrahedra(const SceneBody& body) const {
         const auto* file = std::get_if<ModelFile>(&body.mesh);
         if (file == nullptr) return {};

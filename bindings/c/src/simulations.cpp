@@ -26,7 +26,7 @@ const Simulation& simulation_at(const echinus_simulation* simulation) {
     return at(simulation, "simulation").value;
 }
 
-/// A simulation to change.
+/// A simulation that may be changed.
 /// @throws WrongArgument for null, Error Diverged for one that can only be read
 Simulation& running_at(echinus_simulation* simulation) {
     if (at(simulation, "simulation").failed)
@@ -132,7 +132,8 @@ echinus_status echinus_simulation_read_collider(const echinus_simulation* simula
         const std::vector<Collider>& colliders = simulation_at(simulation).colliders();
         require_index(index, colliders.size(), "collider");
         echinus_collider result{};
-        simulation->maps[index].value = colliders[index].map; // another one where it deforms
+        // A different map in each frame if the collider deforms.
+        simulation->maps[index].value = colliders[index].map;
         result.map = &simulation->maps[index];
         result.pose = pose_to_c(colliders[index].pose);
         put_vector(colliders[index].scale, result.scale);

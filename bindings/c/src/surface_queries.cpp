@@ -1,4 +1,4 @@
-// Triangles against the surface of an exact map.
+// Queries of triangles against the surface of an exact map.
 
 #include "handles.hpp"
 

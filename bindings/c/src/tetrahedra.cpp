@@ -148,7 +148,7 @@ echinus_status echinus_tetrahedra_measure_distance(const echinus_tetrahedra* bod
     });
 }
 
-// ---- Points that go along
+// ---- Points that move with a body
 
 echinus_status echinus_embedding_create(const echinus_tetrahedra* body, const float* points, size_t count,
                                         size_t stride, uint32_t thread_count, echinus_embedding** embedding) {

@@ -17,7 +17,7 @@ std::string text_of(const py::handle& object) {
     return py::str(object);
 }
 
-/// @param kinds  NumPy's letters for the types of numbers that will do
+/// @param kinds  NumPy's letters for the accepted types of numbers
 py::array array_of(const py::object& object, const char* name, std::string_view kinds, const char* wanted) {
     py::array array = py::array::ensure(object);
     if (!array)
@@ -57,7 +57,7 @@ void require_rows_of(py::ssize_t width, const py::array& array, const char* name
 }
 
 /// [n, width]
-/// @param row  what one row is called
+/// @param row  the name of a row
 py::array_t<std::uint32_t> index_array(const py::object& indices, py::ssize_t width, const char* name,
                                        const char* row, const char* remedy) {
     const py::array array = array_of(indices, name, "iu", "whole numbers");
@@ -109,12 +109,13 @@ std::vector<Cell> cells_of(const py::array_t<std::uint32_t>& cells) {
 
 // ---- Memory of large answers
 //
-// New memory from the system comes a page at a time, each cleared first: for contacts of a million points a
-// tenth of the time of the query. So the block that was given up last waits for the next call.
+// The system provides new memory page by page and clears each page first; for the contacts of a million
+// points this takes a tenth of the time of the query. So the block that was released last is kept for the
+// next call.
 
 constexpr py::ssize_t kLarge = 1 << 20, kMostKept = 64 << 20; // bytes
 
-/// The block that waits, an array of bytes, or nothing. Kept until the process ends, as Python may be gone
+/// The block that is kept, an array of bytes, or nothing. It is never destroyed, since Python may have ended
 /// when C++ destroys its static objects.
 py::object& waiting_block() {
     static auto* block = new py::object;
@@ -130,10 +131,10 @@ py::array block_of(py::ssize_t size) {
             return block;
         }
     }
-    return py::array_t<std::uint8_t>(size); // by NumPy, which asks for large pages
+    return py::array_t<std::uint8_t>(size); // from NumPy, which requests large pages
 }
 
-/// A new array, the memory of which waits for another one when this one and its views are gone.
+/// A new array whose memory is kept for another one after this array and its views have been destroyed.
 py::array array_in_block(const py::dtype& type, const std::vector<py::ssize_t>& shape, py::ssize_t size) {
     py::array block = block_of(size);
     const void* data = block.data();
@@ -165,7 +166,7 @@ bool Points::read_in_place(const py::array& points) {
         return false;
     std::size_t size = 1;
     py::ssize_t stride = sizeof(Vec3f);
-    for (auto axis = last - 1; axis >= 0; --axis) { // do all dimensions but the last step through one row?
+    for (auto axis = last - 1; axis >= 0; --axis) { // do the dimensions before the last form one row?
         if (axis == last - 1)
             stride = points.strides(axis);
         else if (points.strides(axis) != points.strides(axis + 1) * points.shape(axis + 1))
@@ -179,8 +180,8 @@ bool Points::read_in_place(const py::array& points) {
 }
 
 void Points::convert(const py::array& points, const Vec3d& origin) {
-    // By our own loop from double: NumPy would warn of numbers beyond the range of float, which become
-    // infinite and are outside.
+    // Converted from double by a loop of our own, because NumPy would warn about numbers beyond the range of
+    // float, which become infinite and are outside.
     const py::array_t<double, py::array::c_style | py::array::forcecast> numbers(points);
     py::array_t<float> floats(numbers.size());
     const auto count = static_cast<std::size_t>(numbers.size()) / 3;
@@ -196,7 +197,7 @@ void Points::keep_apart_from(const py::array& answers) {
     const auto* first = reinterpret_cast<const std::byte*>(&span_[0]);
     const auto* end = reinterpret_cast<const std::byte*>(&span_[size() - 1] + 1);
     const auto* first_answer = static_cast<const std::byte*>(answers.data());
-    const std::less<> before; // also of places in different arrays
+    const std::less<> before; // also compares addresses in different arrays
     if (before(first, first_answer + answers.nbytes()) && before(first_answer, end))
         convert(py::array(owner_), {}); // read in place, so without an origin
 }

@@ -15,18 +15,18 @@
 #include <string>
 #include <vector>
 
-/// NumPy's arrays as the library takes them. Wrong shapes are ValueErrors and wrong types TypeErrors, whose
-/// sentences name the argument.
+/// Converts NumPy's arrays to the types of the library and back. Wrong shapes are ValueErrors and wrong types
+/// TypeErrors, whose sentences name the argument.
 namespace echinus::python {
 
 namespace py = pybind11;
 
-/// The object as an array of real numbers of whatever type.
+/// The object as an array of real numbers of any type.
 py::array number_array(const py::object& object, const char* name);
 
-/// Points [..., 3], read in place where they are float32, aligned, and the three coordinates of each lie side
-/// by side, with any distance from one point to the next. All else is converted to float32 once, and so is
-/// everything that is asked of a map with an origin: relative to it, after a subtraction in double.
+/// Points [..., 3], read in place if they are float32 and aligned, and the three coordinates of each point
+/// are contiguous, with any distance between the points. Everything else is converted to float32 once. For a
+/// map with an origin, points are always converted, after the origin is subtracted in double.
 class Points {
   public:
     Points(const py::object& points, const char* name, const Vec3d& origin = {});
@@ -49,8 +49,8 @@ class Points {
 
 py::array new_array(const py::dtype& type, const std::vector<py::ssize_t>& shape);
 
-/// A new array for one answer to each point, or `out` where that is not None and fits. As NumPy does, points
-/// that `out` overlaps are read from a copy.
+/// A new array for one answer to each point, or `out` if that is not None and fits. As in NumPy, points that
+/// `out` overlaps are read from a copy.
 py::array answers(const py::dtype& type, const std::vector<py::ssize_t>& shape, const py::object& out,
                   Points& read);
 
@@ -58,25 +58,25 @@ py::array answers(const py::dtype& type, const std::vector<py::ssize_t>& shape, 
 py::array view_of(std::span<const Vec3f> points, const py::object& owner);
 py::array view_of(std::span<const Triangle> faces, const py::object& owner);
 py::array view_of(std::span<const Tetrahedron> tetrahedra, const py::object& owner);
-/// Their particles, [n, 4].
+/// The particles of the tetrahedra, [n, 4].
 py::array view_of(std::span<const ElasticTetrahedron> tetrahedra, const py::object& owner);
 py::array view_of(std::span<const float> numbers, const py::object& owner);
 
-/// [n, 3] float32, contiguous; the same array where it is one already. Of numbers that float32 could not hold
-/// (mesh/local_frame.hpp) a copy in float64.
-/// @param cells  [m, 3] faces, or [m, 4] tetrahedra, which tell the vertices that count
+/// [n, 3] float32, contiguous; the same array if it already is one. Numbers that float32 could not hold
+/// (mesh/local_frame.hpp) are copied in float64.
+/// @param cells  [m, 3] faces, or [m, 4] tetrahedra, which determine the vertices that matter
 py::array vertex_array(const py::object& vertices, const py::array_t<std::uint32_t>& cells);
-/// [n, 3] float32, contiguous; the same array where it is one already.
+/// [n, 3] float32, contiguous; the same array if it already is one.
 py::array_t<float> float_array(const py::object& points, const char* name);
-/// [n, 3] uint32, contiguous; the same array where it is one already.
+/// [n, 3] uint32, contiguous; the same array if it already is one.
 py::array_t<std::uint32_t> face_array(const py::object& faces);
-/// [n, 4] uint32, contiguous; the same array where it is one already.
+/// [n, 4] uint32, contiguous; the same array if it already is one.
 py::array_t<std::uint32_t> tetrahedron_array(const py::object& tetrahedra);
 
-/// Whole numbers, not negative, of any shape, as one row.
+/// The elements of an array of any shape, which must be non-negative whole numbers, as one row.
 std::vector<std::uint32_t> whole_numbers(const py::object& numbers, const char* name);
 
-/// Of arrays from the functions above.
+/// Conversions of arrays that the functions above returned.
 std::vector<Vec3f> points_of(const py::array_t<float>& vertices);
 TriangleMesh mesh_of(const py::array& vertices, const py::array_t<std::uint32_t>& faces);
 TetrahedralMesh body_of(const py::array& vertices, const py::array_t<std::uint32_t>& tetrahedra);
@@ -92,11 +92,11 @@ auto unlocked(const Work& work) {
     return work();
 }
 
-/// As the library takes it: 0 for all cores.
+/// The number of threads in the form of the library: 0 for all cores.
 unsigned thread_count(int threads);
 
 /// Calls body(first, count) for consecutive pieces of a batch, without Python's lock. Ctrl-C ends the batch
-/// between two of them, so they are large: neighbours in a batch share the work of contacts.
+/// between two pieces. The pieces are large, since neighbours in a batch share work on contacts.
 template <typename Body>
 void in_pieces(std::size_t count, const Body& body) {
     constexpr std::size_t kPiece = 1U << 20U;

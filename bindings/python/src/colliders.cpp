@@ -79,7 +79,7 @@ py::array sampled(const VertexCache& cache, double seconds) {
     return result;
 }
 
-/// Checks what pose_at() takes for granted; a simulation checks it by itself.
+/// Checks the preconditions of pose_at(); a simulation makes these checks by itself.
 void require_valid(const std::vector<PoseKey>& keys) {
     constexpr double kTolerance = 1e-4;
     if (keys.empty()) throw py::value_error("there is no key");

@@ -25,7 +25,7 @@ class Shared {
   public:
     explicit Shared(Collision collision) : collision_(std::move(collision)) {}
 
-    /// Calls work(collision) alone.
+    /// Calls work(collision) while no other thread does.
     template <typename Work>
     auto alone(const Work& work) {
         const py::gil_scoped_release released; // first, as in SharedSimulation
@@ -47,7 +47,7 @@ std::vector<Collider> colliders_of(const std::vector<ColliderArguments>& argumen
     return colliders;
 }
 
-/// Vectors [n, 3] that are changed in place; none for None.
+/// Vectors [n, 3] that are changed in place; empty for None.
 std::span<Vec3f> changed_in_place(const py::object& object, const char* name) {
     if (object.is_none()) return {};
     using Floats = py::array_t<float, py::array::c_style>;
@@ -68,7 +68,7 @@ std::vector<Vec3f> copied_points(const py::object& object, const char* name) {
     return copy;
 }
 
-/// [n] numbers; none for None.
+/// [n] numbers; empty for None.
 std::vector<float> copied_numbers(const py::object& object, const char* name) {
     if (object.is_none()) return {};
     const py::array_t<float> numbers(number_array(object, name));

@@ -36,7 +36,8 @@ Deformable soft_body(const py::array& vertices, const py::array_t<std::uint32_t>
 
 // ---- Pickles
 
-/// All that a deformable consists of, array by array. Whoever takes it checks it as it checks any deformable.
+/// Calls use() for each array of a deformable. Functions that receive a deformable from a pickle check it
+/// like any other.
 template <typename Use>
 void for_each_part(const Use& use) {
     use(&Deformable::positions);

@@ -4,8 +4,8 @@
 
 #include <pybind11/pybind11.h>
 
-/// The parts of echinus._core: what the Python files of the package need of the library, in the plainest
-/// form. Defaults, documentation and checks that are easily said in Python are there.
+/// The parts of echinus._core: the functions of the library that the Python files of the package need, in the
+/// plainest form. Defaults, documentation and checks that are easily expressed in Python are in those files.
 namespace echinus::python {
 
 void bind_errors(py::module_& module);

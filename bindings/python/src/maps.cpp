@@ -33,7 +33,7 @@ py::dtype struct_type(std::size_t size, const std::vector<Field>& fields) {
     return {names, formats, offsets, static_cast<py::ssize_t>(size)};
 }
 
-// Kept until the process ends: Python may be gone when C++ destroys its static objects.
+// Never destroyed, since Python may have ended when C++ destroys its static objects.
 
 const py::dtype& contact_type() {
     static const auto* type =
@@ -153,7 +153,7 @@ py::bytes bytes_of(const AnyMap& map) {
     return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
 }
 
-/// The map reads a copy of the bytes, whose first is where the reader needs it.
+/// The map reads a copy of the bytes, aligned as the reader requires.
 AnyMap map_from_bytes(const py::bytes& bytes) {
     const std::string_view text = bytes;
     auto copy = std::make_shared<std::vector<std::uint64_t>>((text.size() + 7) / 8);

@@ -56,7 +56,7 @@ py::tuple repair_mesh(const Vertices& vertices, const Faces& faces, const py::di
 }
 
 /// Calls measure(point) for each point, in double and relative to the origin. An array of points costs time
-/// in proportion to the mesh, so the pieces between which Ctrl-C is heard are small.
+/// in proportion to the mesh, so the pieces between which Ctrl-C is checked are small.
 template <typename Measure>
 py::array measured(const py::object& points, const Vec3d& origin, int threads, const Measure& measure) {
     constexpr std::size_t kPiece = 1024;
@@ -91,7 +91,7 @@ py::array pair_array(const std::vector<FacePair>& pairs) {
     return result;
 }
 
-/// In the frame of the mesh that has this origin: [n, 3] float32, or float64 where it is not 0.
+/// A curve in the frame of the mesh that has this origin: [n, 3] float32, or float64 if the origin is not 0.
 py::array curve_array(const IntersectionCurve& curve, const Vec3d& origin) {
     const auto filled = [&](auto array, const auto& value_of) {
         auto* to = array.mutable_data();

@@ -11,7 +11,7 @@
 
 namespace {
 
-/// pybind11 before 2.12 knows only the memory layout of NumPy 1's types. With NumPy 2 it takes wrong strides:
+/// pybind11 before 2.12 knows only the memory layout of NumPy 1's types. With NumPy 2 it reads wrong strides:
 /// answers would be wrong, or written past the end of their array.
 void refuse_numpy_2() {
 #if PYBIND11_VERSION_HEX < 0x020C0000
@@ -73,7 +73,8 @@ const char* name_of(ErrorCode code) {
     return "internal";
 }
 
-/// A sentence may name a file whose name is not UTF-8: then as Python itself shows such names.
+/// A sentence may contain the name of a file that is not UTF-8; it is then shown as Python itself shows such
+/// names.
 py::str text_of(const Error& error) {
     const std::string_view sentence = error.what();
     return py::reinterpret_steal<py::str>(

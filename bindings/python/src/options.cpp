@@ -13,7 +13,7 @@ std::string sentence(const char* name, const std::string& wanted, const py::hand
     return std::string(name) + " must be " + wanted + ", not " + std::string(py::repr(given));
 }
 
-/// Is it a list of numbers, of which there may be too few?
+/// Is it a list of numbers, possibly with too few elements?
 bool has_numbers(const py::handle& given) {
     if (!py::isinstance<py::tuple>(given) && !py::isinstance<py::list>(given)) return false;
     const auto entries = py::reinterpret_borrow<py::sequence>(given);
@@ -21,7 +21,7 @@ bool has_numbers(const py::handle& given) {
                        [](const py::handle& entry) { return PyNumber_Check(entry.ptr()) != 0; });
 }
 
-/// A number or numbers.
+/// A number or several numbers.
 template <typename T>
 T numbers(const char* name, const std::string& wanted, const py::handle& given) {
     try {
@@ -33,10 +33,10 @@ T numbers(const char* name, const std::string& wanted, const py::handle& given) 
     }
 }
 
-/// Neither texts nor numbers with a point become whole numbers.
+/// Neither strings nor numbers with a decimal point are accepted as whole numbers.
 template <typename T>
 T whole(const char* name, const py::handle& given) {
-    // Not more than C++ may also have as the difference of two sizes.
+    // No more than the largest difference of two sizes in C++.
     constexpr std::uint64_t kMost = std::min<std::uint64_t>(std::numeric_limits<T>::max(), INT64_MAX);
     const std::string wanted = "a whole number from 0 to " + std::to_string(kMost);
     if (PyIndex_Check(given.ptr()) == 0) throw py::type_error(sentence(name, wanted, given));
@@ -49,7 +49,7 @@ T whole(const char* name, const py::handle& given) {
     throw py::value_error(sentence(name, wanted, given));
 }
 
-/// Numbers in pairs, [n, 2].
+/// Pairs of numbers, [n, 2].
 std::vector<std::array<std::uint32_t, 2>> pairs_of(const py::object& numbers, const char* name) {
     const std::vector<std::uint32_t> row = whole_numbers(numbers, name);
     const py::array array = py::array::ensure(numbers);

@@ -13,12 +13,12 @@
 #include <string>
 #include <vector>
 
-/// Options of Python, values of a dictionary by their names, as those of C++, and back; option_names.hpp has
-/// which name is which member. Wrong types are TypeErrors and wrong values ValueErrors, whose sentences name
-/// the option; ranges are checked by the library.
+/// Converts the options of Python, which are values of a dictionary by their names, to those of C++ and back;
+/// option_names.hpp relates names and members. Wrong types are TypeErrors and wrong values ValueErrors, whose
+/// sentences name the option; ranges are checked by the library.
 namespace echinus::python {
 
-/// Sets members from a dictionary, which has them all.
+/// Sets members from a dictionary that contains all of them.
 class FromPython {
   public:
     explicit FromPython(const py::dict& values) : values_(values) {}
@@ -38,10 +38,10 @@ class FromPython {
     void operator()(const char* name, Enum& member, std::initializer_list<const char*> words) const {
         member = static_cast<Enum>(word(name, words));
     }
-    /// Of "position" and "rotation".
+    /// Set from "position" and "rotation".
     void operator()(RigidTransform& member) const;
 
-    /// The same, where None leaves the default.
+    /// The same, but None keeps the default.
     void unless_none(const char* name, auto& member, auto... more) const {
         if (!values_[name].is_none()) (*this)(name, member, more...);
     }

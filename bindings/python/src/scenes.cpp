@@ -88,8 +88,8 @@ TetrahedralMesh read_body(const SceneBody& body, const std::filesystem::path& pa
     return fill_body(body, read_mesh(path));
 }
 
-/// The files that the scene's simulation takes besides the scene. None where the scene does not name a file,
-/// and for colliders without a cache.
+/// The simulation of a scene, from the contents of its files. They are None if the scene does not name a
+/// file, and for colliders without a cache.
 std::unique_ptr<SharedSimulation>
 simulation_of_scene(const Scene& scene, const std::vector<ColliderMap>& maps,
                     const std::vector<std::optional<VertexCache>>& model_caches,
@@ -113,7 +113,7 @@ simulation_of_scene(const Scene& scene, const std::vector<ColliderMap>& maps,
 
 constexpr std::array kCollisionModes{"particles", "surfaces", "surfaces_and_self"};
 
-/// @param mode  one of those words; where only particles collide, nothing is untangled
+/// @param mode  one of kCollisionModes; if only particles collide, nothing is untangled
 void choose_collision(Scene& scene, const std::string& mode) {
     const auto found = std::find(kCollisionModes.begin(), kCollisionModes.end(), std::string_view(mode));
     auto* const newton = std::get_if<NewtonOptions>(&scene.simulation.solver);

@@ -17,15 +17,16 @@ class SharedSimulation {
   public:
     explicit SharedSimulation(Simulation simulation) : simulation_(std::move(simulation)) {}
 
-    /// Calls work(simulation) alone.
+    /// Calls work(simulation) while no other thread does.
     template <typename Work>
     auto alone(const Work& work) {
-        // Python's lock first: a thread that waited for the mutex with it would stop the one that computes.
+        // Python's lock is released first: a thread that held it while waiting for the mutex would block the
+        // thread that computes.
         const py::gil_scoped_release released;
         const std::lock_guard guard(mutex_);
         return work(simulation_);
     }
-    /// The same for work that goes on with the simulation, which is not possible once it has diverged.
+    /// The same for work that changes the simulation, which is not possible after it has diverged.
     template <typename Work>
     void change(const Work& work) {
         alone([&](Simulation& simulation) {
@@ -39,7 +40,7 @@ class SharedSimulation {
             }
         });
     }
-    /// For what no step changes: options, faces, and where the positions lie.
+    /// For data that no step changes: options, faces, and the addresses of the positions.
     const Simulation& unchanging() const { return simulation_; }
 
   private:

@@ -32,7 +32,7 @@ std::unique_ptr<SharedSimulation> simulation_of(const Deformable& deformable,
 
 // ---- Simulations
 
-/// Ctrl-C ends it between two frames.
+/// Ctrl-C ends the loop between two frames.
 void step(SharedSimulation& simulation, std::uint32_t frame_count) {
     for (std::uint32_t i = 0; i < frame_count; ++i) {
         if (PyErr_CheckSignals() != 0) throw py::error_already_set();
@@ -45,7 +45,7 @@ py::bytes save_state(SharedSimulation& shared) {
     return {reinterpret_cast<const char*>(state.data()), state.size()};
 }
 
-/// Not in place, where views of the positions would end.
+/// Restores a copy: in place, views of the positions would become invalid.
 std::unique_ptr<SharedSimulation> restored(SharedSimulation& shared, const py::bytes& state) {
     const std::string_view text = state;
     const std::span<const std::byte> bytes(reinterpret_cast<const std::byte*>(text.data()), text.size());
@@ -98,7 +98,7 @@ py::tuple load_on(SharedSimulation& shared, std::int64_t index) {
     return py::make_tuple(to_python(load.force), to_python(load.torque));
 }
 
-/// [contact]: positions, normals, gaps, impulses, colliders, particles. Numbers of what is not there are -1.
+/// [contact]: positions, normals, gaps, impulses, colliders, particles. Absent indices are -1.
 py::tuple contact_points(SharedSimulation& shared) {
     const auto points = shared.alone([](Simulation& s) {
         return std::vector<ContactPoint>(s.contact_points().begin(), s.contact_points().end());

@@ -59,7 +59,7 @@ py::tuple distance_to(const Vertices& vertices, const Tetrahedra& tetrahedra, co
     return py::make_tuple(d.mean_to_model, d.greatest_to_model, d.mean_to_boundary, d.greatest_to_boundary);
 }
 
-/// An embedding, and how many vertices the body has that it was made with.
+/// An embedding, and the number of vertices of the body for which it was made.
 struct BodyEmbedding {
     Embedding points;
     std::size_t vertex_count;
@@ -89,7 +89,7 @@ py::array carry_points(const BodyEmbedding& embedding, const py::object& positio
     return carried;
 }
 
-/// Of the members of each point, which lie in C++ one beside the other.
+/// An array of one member of each point; in C++ the members of a point are adjacent.
 template <typename T>
 py::array_t<T> gathered(const Embedding& points, py::ssize_t width, std::size_t offset) {
     py::array_t<T> result({static_cast<py::ssize_t>(points.size()), width});

@@ -14,7 +14,7 @@
 #include <string>
 #include <tuple>
 
-/// Vectors, poses and numbers of Python as the library takes them.
+/// Converts vectors, poses and numbers of Python to the types of the library.
 namespace echinus::python {
 
 namespace py = pybind11;
@@ -41,7 +41,7 @@ inline std::tuple<double, double, double, double> to_python(const Rotation& rota
     return {rotation.w, rotation.x, rotation.y, rotation.z};
 }
 
-/// @param what  is counted
+/// @param what  what is counted
 /// @throws IndexError
 inline std::size_t index_below(std::size_t count, std::int64_t index, const char* what) {
     if (index < 0 || static_cast<std::size_t>(index) >= count)
@@ -49,8 +49,8 @@ inline std::size_t index_below(std::size_t count, std::int64_t index, const char
     return static_cast<std::size_t>(index);
 }
 
-/// The members of a report, by their names, places in the frame of the file.
-/// @param origin  the mesh's
+/// The members of a report by their names, with positions in the frame of the file.
+/// @param origin  the origin of the mesh
 pybind11::dict report_dict(const MeshReport& report, const Vec3d& origin);
 
 } // namespace echinus::python

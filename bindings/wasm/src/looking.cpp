@@ -163,8 +163,8 @@ void look_along(const DistanceMapView& map, const Vec3d& unit, Lists& lists) {
 // ---- Cells
 
 struct Cells {
-    std::vector<std::uint32_t> band_counts,
-        face_counts;            ///< [cell_count] the number of bands, and of faces in all of their lists
+    /// [cell_count] the number of bands, and of faces in all of their lists.
+    std::vector<std::uint32_t> band_counts, face_counts;
     std::vector<float> corners; ///< [9 cell_count] unit vectors
 };
 
