@@ -3,12 +3,12 @@
 from . import Refusal
 from .meshes import hindrance, require_mesh
 
-#: Objects with a surface that are no meshes.
+#: Types of objects that have a surface but are not meshes.
 SURFACES = {"CURVE", "FONT", "META", "SURFACE"}
 
 
 def bodies_of(context):
-    """The bodies, each once, and the members of *More Bodies* that are left out, in words.
+    """The bodies without duplicates, and the omitted members of *More Bodies* with reasons, as texts.
 
     Raises
     ------
@@ -29,12 +29,12 @@ def bodies_of(context):
 
 
 def said_of(skipped):
-    """The end of a sentence; empty if nothing was skipped."""
+    """The end of a sentence that names what was skipped; empty if nothing was."""
     return f"; without {', '.join(skipped)}" if skipped else ""
 
 
 def _why_left_out(context, thing):
-    """Empty for bodies, and for what has no surface, such as a lamp."""
+    """The reason why an object is left out; empty for bodies and for objects without a surface, such as lamps."""
     if thing.type in SURFACES:
         return "not a mesh"
     if thing.type == "EMPTY" and thing.instance_type == "COLLECTION":

@@ -1,4 +1,4 @@
-"""The operator that finds where a cloth is inside bodies or cut by them, at the present frame."""
+"""The operator that finds the parts of a cloth that are inside bodies or cut by them, at the present frame."""
 
 from dataclasses import dataclass
 
@@ -44,7 +44,7 @@ class CheckCollisions(Reporting, bpy.types.Operator):
 
 @dataclass(frozen=True)
 class Collisions:
-    """Vertices inside, polygons cut and the vertices of these, and what the count leaves open, in words."""
+    """Vertices inside, polygons cut and the vertices of these, and the reservations about the count, as texts."""
 
     inside: np.ndarray
     cut_faces: np.ndarray
@@ -76,7 +76,7 @@ def find_collisions(echinus, context):
 
 
 def fill_group(thing, name, vertices):
-    """The group has these vertices, with the weight 1, and no other."""
+    """Makes the group contain exactly these vertices, with weight 1."""
     group = thing.vertex_groups.get(name) or thing.vertex_groups.new(name=name)
     group.remove(range(len(thing.data.vertices)))
     group.add(vertices.tolist(), 1, "REPLACE")

@@ -51,7 +51,7 @@ class CheckMesh(Reporting, bpy.types.Operator):
 
 
 def find_selection(echinus, thing, kinds):
-    """The counts of faults, in words, and their places: vertices, edges (k, 2) and polygons."""
+    """The counts of faults, as text, and their places: vertices, edges (k, 2) and polygons."""
     require_mesh(thing, "active object")
     if thing.library or thing.data.library or thing.data.override_library:
         raise Refusal(f"{thing.name} is linked from another file, and nothing can be selected: check it there")
@@ -88,10 +88,10 @@ def find_selection(echinus, thing, kinds):
 
 
 def select(context, places):
-    """Selects these, and nothing else, in edit mode."""
+    """Selects only these elements, in edit mode."""
     points, edges, faces = places
     tool_settings = context.tool_settings
-    # One mode in which all of it can be seen.
+    # A mode in which all selected elements are visible.
     if len(points):
         tool_settings.mesh_select_mode = (True, False, False)
     elif len(edges):

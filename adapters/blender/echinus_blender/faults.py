@@ -1,4 +1,4 @@
-"""All places of the faults that ``echinus.inspect`` counts. No Blender is needed here."""
+"""The places of all faults that ``echinus.inspect`` counts. This file does not need Blender."""
 
 from dataclasses import dataclass
 
@@ -7,12 +7,12 @@ import numpy as np
 
 @dataclass(frozen=True)
 class Faults:
-    """Edges are (k, 2) vertices, ascending in a row; the rest are ascending numbers of faces or vertices.
+    """Edges are (k, 2) vertices, ascending in each row; the other arrays are ascending indices of faces or vertices.
 
     Attributes
     ----------
     parted_vertices
-        Whose faces form more than one fan, though no edge need be at fault.
+        Vertices whose faces form more than one fan; their edges may be without faults.
     """
 
     border_edges: np.ndarray
@@ -24,12 +24,12 @@ class Faults:
 
 
 def find_faults(vertices, faces):
-    """The faults of triangles, by the definitions of ``echinus.MeshReport``.
+    """The faults of triangles according to the definitions of ``echinus.MeshReport``.
 
     Parameters
     ----------
     vertices : (n, 3) float32
-    faces : (m, 3) of integers, in range
+    faces : (m, 3) integers, in range
     """
     ends, corners = _edge_uses(faces)
     edges, edge_of_use, use_counts = np.unique(np.sort(ends, axis=1), axis=0, return_inverse=True, return_counts=True)
@@ -50,7 +50,7 @@ def _has_equal_corners(faces):
 
 
 def _edge_uses(faces):
-    """For each use of an edge by a face its two vertices, and their corners, numbered through all faces.
+    """For each use of an edge by a face, its two vertices and their corners, which are numbered over all faces.
 
     Faces with two equal corners have no edges.
     """
@@ -70,7 +70,7 @@ def _normals(vertices, faces):
 
 
 def _parted_vertices(faces, ends, corners, edge_of_use):
-    """Corners at one vertex are joined where their faces share an edge; a vertex with several sets is parted."""
+    """Joins corners of a vertex if their faces share an edge; a vertex with several sets of corners is parted."""
     order = np.argsort(edge_of_use, kind="stable")
     is_same_edge = edge_of_use[order][1:] == edge_of_use[order][:-1]
     one, other = order[:-1][is_same_edge], order[1:][is_same_edge]
@@ -84,7 +84,7 @@ def _parted_vertices(faces, ends, corners, edge_of_use):
 
 
 def _joined(count, a, b):
-    """The least member of the set of each of ``count`` things, when every a[i] is joined with b[i]."""
+    """For each of ``count`` items, the least member of its set, after every a[i] has been joined with b[i]."""
     least = np.arange(count)
     while True:
         before = least.copy()

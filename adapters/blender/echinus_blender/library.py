@@ -1,4 +1,4 @@
-"""The Python module ``echinus``: found, or how to get it."""
+"""Finds the Python module ``echinus``, or explains how to get it."""
 
 import importlib
 import sys
@@ -14,12 +14,12 @@ HOW_TO_INSTALL = (
 
 
 def load():
-    """The module.
+    """Returns the module.
 
     Raises
     ------
     Refusal
-        It is not there, or a library that it needs is not.
+        The module, or a library that it needs, is missing.
     """
     folder = bpy.path.abspath(bpy.context.preferences.addons[__package__].preferences.module_folder)
     if folder and folder not in sys.path:

@@ -11,7 +11,7 @@ def require_mesh(candidate, what):
     Raises
     ------
     Refusal
-        There is no such object, or it is no mesh with faces.
+        There is no such object, or it is not a mesh with faces.
     """
     if candidate is None:
         raise Refusal(f"Choose a mesh as the {what}")
@@ -22,7 +22,7 @@ def require_mesh(candidate, what):
 
 
 def hindrance(context, thing):
-    """Why Blender need not have computed the object, and the remedy; None if it has."""
+    """Why Blender may not have computed the object, and the remedy; None if it has."""
     if context.scene not in thing.users_scene:
         return "not in the scene", "choose another object"
     if thing.name not in context.view_layer.objects:
@@ -50,7 +50,7 @@ def triangles_of(mesh):
 
 
 def loose_edges_of(mesh):
-    """(count, 2) int32: edges that no polygon has."""
+    """(count, 2) int32: edges that belong to no polygon."""
     edges = np.empty((len(mesh.edges), 2), np.int32)
     mesh.edges.foreach_get("vertices", edges.ravel())
     is_loose = np.empty(len(mesh.edges), bool)
@@ -65,7 +65,7 @@ def matrix_of(evaluated):
 
 @contextlib.contextmanager
 def evaluated_mesh(context, thing):
-    """The object and its mesh at the present frame, with the modifiers that the view shows.
+    """The object and its mesh at the present frame, with the modifiers that are enabled in the view.
 
     Raises
     ------
@@ -89,7 +89,7 @@ def world_mesh(context, thing):
     Raises
     ------
     Refusal
-        Its modifiers leave no face.
+        Its modifiers leave no faces.
     """
     with evaluated_mesh(context, thing) as (evaluated, mesh):
         triangles, _ = triangles_of(mesh)
@@ -105,5 +105,5 @@ def in_world(vertices, matrix):
 
 
 def outwards(triangles, matrix):
-    """A matrix that mirrors turns faces round."""
+    """Reverses the faces if the matrix mirrors, so that they look outwards."""
     return triangles[:, ::-1] if np.linalg.det(matrix[:3, :3]) < 0 else triangles

@@ -1,14 +1,14 @@
-"""Which modifiers of a cloth come before its motion, and the one that plays it."""
+"""The modifiers of a cloth that come before its motion, and the one that plays the motion."""
 
 import contextlib
 import re
 
 import bpy
 
-#: The name of the modifier that plays the motion. Blender numbers it where the user has one of this name.
+#: The name of the modifier that plays the motion. Blender appends a number if the user has one of this name.
 MOTION = "Echinus"
 
-#: Modifiers that move vertices and leave their number alone.
+#: Modifiers that move vertices and keep their number.
 MOVING = {
     "ARMATURE",
     "CAST",
@@ -33,7 +33,7 @@ MOVING = {
     "WAVE",
 }
 
-#: Modifiers that leave vertices where they are, and their number alone.
+#: Modifiers that change neither the positions of vertices nor their number.
 STILL = {
     "COLLISION",
     "DATA_TRANSFER",
@@ -52,7 +52,7 @@ STILL = {
 
 
 def _may_add(modifier):
-    """Whether it may change the number of vertices."""
+    """Whether the modifier may change the number of vertices."""
     if modifier.type == "FLUID":
         return modifier.fluid_type == "DOMAIN"
     if modifier.type == "OCEAN":
@@ -61,19 +61,19 @@ def _may_add(modifier):
 
 
 def motion_modifier_of(cloth):
-    """The modifier that plays its motion; None if it has none."""
+    """The modifier that plays the motion of a cloth; None if there is none."""
     mine = re.compile(rf"{MOTION}(\.\d+)?")
     return next((each for each in cloth.modifiers if each.type == "MESH_CACHE" and mine.fullmatch(each.name)), None)
 
 
 def modifiers_after_motion(cloth):
-    """The first modifier that may change the number of vertices, and all after it."""
+    """The first modifier that may change the number of vertices, and all that follow it."""
     adding = [_may_add(modifier) for modifier in cloth.modifiers]
     return cloth.modifiers[adding.index(True) :] if True in adding else []
 
 
 def place_motion(cloth, modifier):
-    """Puts the modifier after all that its motion has in it, and before what works on the result."""
+    """Puts the modifier after those whose effect the motion contains, and before those that work on its result."""
     others = [_may_add(each) for each in cloth.modifiers if each.name != modifier.name]
     index = others.index(True) if True in others else len(others)
     with bpy.context.temp_override(object=cloth):
@@ -92,7 +92,7 @@ def unchecked_movers(cloth):
 
 @contextlib.contextmanager
 def without(modifiers):
-    """The view does not show these modifiers meanwhile."""
+    """Disables these modifiers in the view meanwhile."""
     shown = [modifier for modifier in modifiers if modifier.show_viewport]
     for modifier in shown:
         modifier.show_viewport = False

@@ -1,7 +1,7 @@
-"""The files of motions. Each run writes a new file, so that undo, and blend files saved earlier, keep theirs.
+"""The files of motions. Each run writes a new file, so that undo and blend files saved earlier keep their own.
 
 Motions that no saved blend file plays are removed when another file is opened, which ends undo, or when Blender closes;
-motions that the scene then plays stay, for File > Recover > Last Session.
+motions that the scene plays at that time are kept, for File > Recover > Last Session.
 """
 
 import contextlib
@@ -15,17 +15,17 @@ from . import Refusal
 
 FOLDER = "echinus_cache"
 
-#: Written by this session, and played by no blend file that it saved.
+#: Files that this session wrote and that no blend file saved by it plays.
 _unsaved = set()
 
 
 def place_of_motion(cloth, chosen):
-    """Where its next motion goes: the file that the user has chosen, or one that is not there yet.
+    """The file for the next motion of a cloth: the one that the user has chosen, or one that does not exist yet.
 
     Raises
     ------
     Refusal
-        It cannot be written, or another cloth plays it.
+        The file cannot be written, or another cloth plays it.
     """
     if chosen:
         path = writable_place(chosen, "cache")
@@ -39,7 +39,7 @@ def place_of_motion(cloth, chosen):
 
 
 def _folder():
-    """One for each blend file; a file that was never saved has no folder beside it."""
+    """A folder for each blend file: next to it, or among the user's data if it has never been saved."""
     if not bpy.data.filepath:
         return pathlib.Path(bpy.utils.user_resource("DATAFILES", path=FOLDER))
     blend = pathlib.Path(bpy.data.filepath)
@@ -47,7 +47,7 @@ def _folder():
 
 
 def remember(path):
-    """Says that a run wrote a file of its own."""
+    """Records that a run wrote a file of its own."""
     _unsaved.add(path.resolve())
 
 
@@ -90,7 +90,7 @@ def register():
 
 
 def unregister():
-    """Blender calls it when it closes, too."""
+    """Blender also calls this when it closes."""
     bpy.app.handlers.save_post.remove(_keep_what_is_played)
     bpy.app.handlers.load_post.remove(_forget_undo)
     _remove_what_is_not_played()
@@ -106,7 +106,7 @@ def writable_place(text, what):
     Raises
     ------
     Refusal
-        It is not a whole path, or something else than a file is there, or the folder cannot be written.
+        The path is not complete, or something other than a file exists there, or the folder cannot be written.
     """
     path = pathlib.Path(bpy.path.abspath(text))
     if not path.is_absolute():
@@ -123,7 +123,7 @@ def require_writable(folder):
     Raises
     ------
     Refusal
-        Neither is it a folder that can be written, nor can it be made.
+        The folder cannot be written, or it does not exist and cannot be created.
     """
     existing = next(each for each in (folder, *folder.parents) if each.exists())
     if not existing.is_dir():

@@ -1,10 +1,10 @@
-"""How a body moves through sampled frames: rigidly, or by its vertices. No Blender is needed here."""
+"""The motion of a body through sampled frames: rigid, or by its vertices. This file does not need Blender."""
 
 from dataclasses import dataclass, field
 
 import numpy as np
 
-#: How far from orthonormal a rotation may be: matrices of Blender are in single precision.
+#: How far a rotation may deviate from orthonormality: matrices of Blender are in single precision.
 RIGID_TOLERANCE = 1e-5
 
 
@@ -17,7 +17,7 @@ class BodySamples:
     triangles
         (m, 3), looking outwards in the world; the same in all frames.
     shapes
-        For each frame (n, 3) float32 in the object's frame; one and the same array while nothing changes.
+        For each frame (n, 3) float32 in the object's frame; the same array as long as nothing changes.
     matrices
         For each frame (4, 4), from the object's frame to the world's.
     """
@@ -36,14 +36,14 @@ class BodySamples:
 
 @dataclass(frozen=True)
 class Motion:
-    """A mesh at the first frame, relative to ``origin``, and what becomes of it.
+    """A mesh at the first frame, relative to ``origin``, and its motion.
 
     Attributes
     ----------
     poses
-        Of a body that moves rigidly, for each frame its position and rotation (w, x, y, z); empty if it rests.
+        For a body that moves rigidly, its position and rotation (w, x, y, z) in each frame; empty if it is at rest.
     shapes
-        Of a body that deforms, (frames, n, 3) relative to ``origin``; None if it does not.
+        For a body that deforms, (frames, n, 3) relative to ``origin``; None if it does not.
     """
 
     vertices: np.ndarray
@@ -53,7 +53,7 @@ class Motion:
 
 
 def motion_of(samples):
-    """The simplest motion that the samples allow. Vertices are relative to where the object's origin begins.
+    """The simplest motion that fits the samples. Vertices are relative to the initial position of the object's origin.
 
     Parameters
     ----------
@@ -74,7 +74,7 @@ def motion_of(samples):
 
 
 def rigid_poses(matrices):
-    """Position and rotation in each frame of what the first frame's rotation and scale were applied to before.
+    """The position and rotation in each frame of a mesh to which the first frame's rotation and scale have been applied.
 
     Returns
     -------
@@ -93,7 +93,7 @@ def rigid_poses(matrices):
 def quaternion_of(rotation):
     """The unit quaternion w, x, y, z of a rotation matrix.
 
-    The four products of its components with the largest of them are read off the matrix, so none is a small difference.
+    The products of its components with the largest of them are computed from the matrix, so none is a small difference.
     """
     (a, b, c), (d, e, f), (g, h, i) = rotation
     products = np.array(

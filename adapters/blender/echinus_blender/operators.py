@@ -1,5 +1,5 @@
 """The common parts of operators: errors, which Blender shows in its window or raises as a RuntimeError in scripts; and a
-temporary object mode, since only there the data of objects are those that the user sees in other modes."""
+temporary object mode, since only in it the data of objects include the changes that the user made in other modes."""
 
 import contextlib
 
@@ -12,7 +12,7 @@ class Reporting:
     """For operators: a method that refuses its work ends the operator, and Blender shows the sentence."""
 
     def refused_by(self, function, *arguments):
-        """(the function's result, False), or (None, True) once Blender has been told why there is none."""
+        """Returns (the function's result, False), or (None, True) after the reason has been reported to Blender."""
         try:
             echinus = library.load()
         except Refusal as refusal:
@@ -32,7 +32,7 @@ class Reporting:
 
 @contextlib.contextmanager
 def object_mode(context):
-    """Afterwards the active object is in its mode again, if it still is the active one."""
+    """Afterwards returns the active object to its previous mode, if it is still the active one."""
     thing = context.object
     mode = thing.mode if thing else "OBJECT"
     if mode == "OBJECT":

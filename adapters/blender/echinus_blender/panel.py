@@ -66,7 +66,7 @@ class MeshPanel(InSidebar, bpy.types.Panel):
 
 
 def draw_sentence(layout, sentence, icon, context):
-    """Broken into lines as wide as the sidebar: a label is cut off at its end."""
+    """Breaks a text into lines as wide as the sidebar, since a label that is too long is cut off."""
     column = layout.column(align=True)
     for line in textwrap.wrap(sentence, max(20, context.region.width // 8)):
         column.label(text=line, icon=icon)

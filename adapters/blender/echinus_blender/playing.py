@@ -22,14 +22,14 @@ def to_object_frame(recorded, matrices):
 
 @dataclass(frozen=True)
 class Destination:
-    """Where a motion goes, as it was chosen when its run began: the user may change the scene meanwhile.
+    """The destination of a motion as chosen when its run began: the user may change the scene meanwhile.
 
     Attributes
     ----------
     cache
-        The file in words of the user; empty: one beside the blend file.
+        The file as the user named it; empty for one next to the blend file.
     frame_length
-        Of a frame of the scene, in frames of Blender's animation: *Time Stretching*.
+        The length of a frame of the scene, in frames of Blender's animation: *Time Stretching*.
     """
 
     scene_name: str
@@ -55,7 +55,7 @@ def destination_of(scene):
 
 
 def play(cloth, destination, recorded, matrices):
-    """Writes the motion, and has a modifier of the cloth play it from the first frame on."""
+    """Writes the motion, and makes a modifier of the cloth play it from the first frame on."""
     path = place_of_motion(cloth, destination.cache)
     write_point_cache(path, to_object_frame(recorded, matrices))
     if not destination.cache:

@@ -1,4 +1,4 @@
-"""PC2 files, which the Mesh Cache modifier reads. No Blender is needed here."""
+"""PC2 files, which the Mesh Cache modifier reads. This file does not need Blender."""
 
 import os
 import pathlib
@@ -8,7 +8,7 @@ import numpy as np
 
 
 def write_point_cache(path, samples):
-    """Writes one sample per frame. The file is written atomically; folders above it are created.
+    """Writes one sample per frame. The file is written atomically; missing folders are created.
 
     Parameters
     ----------

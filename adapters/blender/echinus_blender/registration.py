@@ -1,5 +1,5 @@
-"""Which classes Blender knows, where the settings are kept, and the folder of the Python module, if Blender does not
-find it by itself."""
+"""Registers classes and settings with Blender, and the folder of the Python module, for use if Blender does not find the
+module by itself."""
 
 import bpy
 

@@ -1,4 +1,4 @@
-"""A simulation of a cloth among bodies, frame by frame. No Blender is needed here."""
+"""A simulation of a cloth and bodies, frame by frame. This file does not need Blender."""
 
 import re
 from dataclasses import dataclass
@@ -32,12 +32,12 @@ class RunOptions:
 
 @dataclass(frozen=True)
 class Garment:
-    """The cloth as it begins, in the world.
+    """The initial cloth, in the world.
 
     Attributes
     ----------
     threads
-        (k, 2) edges that no face has.
+        (k, 2) edges that belong to no face.
     pins
         Vertices that are held.
     """
@@ -60,7 +60,7 @@ class Run:
     frame_count
         Frames to compute after the first.
     frames_per_second
-        Of the scene.
+        The frame rate of the scene.
 
     Raises
     ------
@@ -109,7 +109,7 @@ class Run:
         return self.simulation.frame / max(1, self.frame_count * self.steps_per_frame)
 
     def step(self):
-        """A part of a frame; records the frame with its last part."""
+        """Computes a part of a frame; records the frame after its last part."""
         self.simulation.step()
         if self.simulation.frame % self.steps_per_frame == 0:
             self.recorded.append(self.simulation.positions.copy())
@@ -142,7 +142,7 @@ PLACES = re.compile(r"(: (face|particle|the edge) |; the first is particle ).*")
 
 
 def in_words_of_the_panel(sentence, cloth_name):
-    """Sentences that name the cloth, and the remedy where its start intersects something."""
+    """A sentence that names the cloth and, if its initial state intersects something, the remedy."""
     what, is_start, remedy = sentence.partition("; move the deformable until they are apart")
     if not is_start:
         return f"{cloth_name}: {sentence}"

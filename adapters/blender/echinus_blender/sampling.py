@@ -29,7 +29,7 @@ class Sampled:
     Attributes
     ----------
     skipped
-        The objects that were meant to be bodies and are left out, in words.
+        The omitted objects that were meant to be bodies, with reasons, as texts.
     matrices
         (4, 4) of the cloth in each frame: its motion is stored in its own frame.
     """
@@ -42,10 +42,10 @@ class Sampled:
 
 
 def sample(context):
-    """Goes through the frames of the scene; yields the share done, 0 to 1, and at last the :class:`Sampled`.
+    """Goes through the frames of the scene; yields the completed share, 0 to 1, and finally the :class:`Sampled`.
 
-    Afterwards the scene is at the frame at which it was. Objects are looked up anew in each frame, since the user may
-    undo in between.
+    Afterwards the scene returns to its previous frame. Objects are looked up again in each frame, since the user may undo
+    in between.
 
     Raises
     ------
@@ -74,7 +74,7 @@ def sample(context):
 
 
 def played_modifiers(cloth):
-    """The modifiers that a cloth does not begin with: its earlier motion, and those that may change the number of its vertices."""
+    """The modifiers that the initial cloth omits: its earlier motion, and those that may change the number of vertices."""
     mine = motion_modifier_of(cloth)
     return list(modifiers_after_motion(cloth)) + ([mine] if mine else [])
 
@@ -95,7 +95,7 @@ def _garment(context):
 
 
 def _members(thing, group_name):
-    """Vertices with a weight of at least a half in a group."""
+    """The vertices with a weight of at least 0.5 in a group."""
     if not group_name:
         return []
     group = thing.vertex_groups.get(group_name)

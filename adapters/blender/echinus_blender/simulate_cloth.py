@@ -33,7 +33,7 @@ class SimulateCloth(Reporting, bpy.types.Operator):
         return not SimulateCloth.is_running
 
     def execute(self, context):
-        """All at once: for scripts."""
+        """Does all the work at once, for scripts."""
         began = time.monotonic()
         with object_mode(context):
             done, refused = self.refused_by(compute_at_once, context)
@@ -60,7 +60,7 @@ class SimulateCloth(Reporting, bpy.types.Operator):
             self.report({"INFO"}, "Simulation cancelled")
             return {"CANCELLED"}
         if event.type != "TIMER":
-            # While the frames of the scene go by, it must not change.
+            # The scene must not change while its frames are sampled.
             return {"PASS_THROUGH"} if self.computing else {"RUNNING_MODAL"}
         try:
             done, refused = self.refused_by(self.advance, context)
@@ -76,7 +76,7 @@ class SimulateCloth(Reporting, bpy.types.Operator):
         return self.finish(*done, time.monotonic() - self.began)
 
     def cancel(self, context):
-        """Also called by Blender, when it closes or loads a file."""
+        """Blender also calls this when it closes or loads a file."""
         self.sampling.close()
         self.mode.close()
         if self.computing:
@@ -91,7 +91,7 @@ class SimulateCloth(Reporting, bpy.types.Operator):
             context.workspace.status_text_set(None)
 
     def advance(self, echinus, context):
-        """Goes on for a moment; the sampled scene and the run once that is done, else None."""
+        """Works for a moment; returns the sampled scene and the run after they are finished, otherwise None."""
         if self.computing is None:
             until = time.monotonic() + SAMPLING_SECONDS
             share = 0
@@ -141,7 +141,7 @@ class SimulateCloth(Reporting, bpy.types.Operator):
 
 
 class Computation:
-    """A run made and computed in a thread, which touches nothing of Blender."""
+    """A run that is made and computed in a thread, which does not access Blender."""
 
     def __init__(self, make_run):
         self._cancelled = threading.Event()
@@ -163,12 +163,12 @@ class Computation:
         return self._run.share_done if self._run else 0
 
     def result(self):
-        """The run once it is done; None before.
+        """The run after it has finished, and None before.
 
         Raises
         ------
         Exception
-            The one that ended the computation.
+            The exception that ended the computation.
         """
         if not self._is_done:
             return None
@@ -192,7 +192,7 @@ def compute_at_once(echinus, context):
 
 
 def run_maker(echinus, context, sampled):
-    """A function that makes the run, of values alone: a thread may call it."""
+    """A function that makes the run from values only, so that a thread may call it."""
     scene = context.scene
     options = options_of(scene)
     frame_count = scene.frame_end - scene.frame_start
@@ -201,7 +201,7 @@ def run_maker(echinus, context, sampled):
 
 
 def options_of(scene):
-    """As Blender's own cloth takes gravity: in units of the scene."""
+    """The options of a run. Gravity is in units of the scene, as for Blender's own cloth."""
     settings = scene.echinus
     return RunOptions(
         steps_per_second=settings.steps_per_second,

@@ -75,7 +75,7 @@ inline void check_margin(btScalar margin, const char* owner) {
         "dispatcher, and would fall through; give it to btSoftRigidDynamicsWorld as the last argument");
 }
 
-/// A box along the axes; empty unless points are added.
+/// An axis-aligned box; empty until points are added.
 struct Box {
     btVector3 low{SIMD_INFINITY, SIMD_INFINITY, SIMD_INFINITY};
     btVector3 high{-SIMD_INFINITY, -SIMD_INFINITY, -SIMD_INFINITY};
@@ -342,14 +342,14 @@ struct NodeBoxes {
             start.add(body.m_nodes[i].m_q);
             end.add(body.m_nodes[i].m_x);
         }
-        if (!body.isActive()) start = end; // a body that sleeps stays
+        if (!body.isActive()) start = end; // a sleeping body does not move
     }
 };
 
 /// A MapShape of an object in the world, alone or in compounds.
 struct PlacedShape {
     btCollisionObject* object;
-    int object_id; ///< that of its proxy in the broad phase
+    int object_id; ///< the number of its proxy in the broad phase
     int number;    ///< of the object's MapShapes
     const MapShape* shape;
     btVector3 scale;                 ///< of the shape
@@ -522,7 +522,7 @@ class NodeKeeper {
         const auto count = static_cast<std::size_t>(body.m_nodes.size());
         for (auto* vectors : {&previous_, &positions_, &velocities_}) vectors->resize(count);
         inverse_masses_.resize(count);
-        const bool sleeps = !body.isActive(); // then it stays
+        const bool sleeps = !body.isActive(); // a sleeping body does not move
         for (std::size_t i = 0; i < count; ++i) {
             const btSoftBody::Node& node = body.m_nodes[static_cast<int>(i)];
             positions_[i] = around_origin(node.m_x);
@@ -692,9 +692,9 @@ class Solver : public btDefaultSoftBodySolver {
     Create create_;
     PlacedShapes shapes_;
     std::vector<SoftBodyPair*> pairs_;     ///< that the broad phase reports; each belongs to an Algorithm
-    std::vector<SoftBodyPair*> beside_;    ///< of them those of one soft body
+    std::vector<SoftBodyPair*> beside_;    ///< the pairs of one soft body
     std::vector<Collider> placed_;         ///< their shapes
-    NodeContacts contacts_;                ///< with those
+    NodeContacts contacts_;                ///< with the shapes in placed_
     std::vector<const PlacedShape*> near_; ///< those that one soft body's nodes may have met
     std::vector<NodeKeeper> keepers_;      ///< [soft body]
 };
