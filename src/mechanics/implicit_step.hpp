@@ -53,9 +53,9 @@ struct StepReport {
 };
 
 /// Steps of a deformable's motion: each finds a minimum of
-///     sum of c m / (2 h^2) |x - y|^2 + elastic energy(x) + contact energy(x),
-/// y where inertia and outer forces would lead, by Newton's method with a projected Hessian, a line search,
-/// and conjugate gradients preconditioned by multigrid (docs/mechanics.md). Places are in double: the
+///     sum of c m / (2 h^2) |x - y|^2 + elastic energy(x) + contact energy(x), where y is the position to
+/// which inertia and outer forces would lead. It uses Newton's method with a projected Hessian, a line
+/// search, and conjugate gradients preconditioned by multigrid (docs/mechanics.md). Places are in double: the
 /// residual of a stiff material is a small difference of large forces.
 class ImplicitStep {
   public:

@@ -46,7 +46,7 @@ class Tracer {
     /// that the lamp and one direction of the surroundings add if nothing blocks them.
     struct Place {
         Vec3f base, lamp_gain, sky_gain;
-        Ray to_lamp, to_sky; ///< unused where the gain is zero
+        Ray to_lamp, to_sky; ///< unused if the gain is zero
     };
     /// The random numbers of one sample in one pixel.
     struct Draw {

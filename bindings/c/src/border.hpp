@@ -15,8 +15,8 @@
 #include <utility>
 #include <vector>
 
-/// What every function of the C interface does at the boundary between C and C++: it catches exceptions,
-/// checks what the types of C cannot exclude, and converts values.
+/// The work of every function of the C interface at the boundary between C and C++: catching exceptions,
+/// checking what the types of C cannot exclude, and converting values.
 namespace echinus::c {
 
 /// A wrong argument of a C function; the sentence begins with the argument's name.

@@ -75,7 +75,7 @@ std::vector<double> crossings_of(const ExactMapView& map, const BandRange& bands
     return distances;
 }
 
-/// For each band: from, to, its faces, and the winding number towards the centre, NaN where it is not unique.
+/// For each band: from, to, its faces, and the winding number towards the centre, NaN if it is not unique.
 std::vector<double> bands_along(const ExactMapView& map, const BandRange& bands, double length_per_unit) {
     std::vector<double> result;
     for (std::uint32_t band = bands.first; band < bands.last; ++band) {

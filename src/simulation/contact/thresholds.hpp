@@ -67,8 +67,8 @@ inline constexpr float kLeastGap = 1.0F / (1 << 19);
 /// not push it again; and the largest number of rounds through the pairs.
 inline constexpr float kPushedTo = 0.9F;
 inline constexpr int kMostPushingRounds = 64;
-/// The largest number of rounds in which pairs are listed again because particles end where it was not
-/// expected; and of times that displacements are halved if those rounds do not suffice, first relative to
+/// The largest number of rounds in which pairs are listed again because particles end at unexpected
+/// positions; and of times that displacements are halved if those rounds do not suffice, first relative to
 /// those of whole bodies, then with them. After that, only held particles of the stopped bodies move.
 inline constexpr int kMostListingRounds = 8, kMostHalvings = 4, kMostHalvingsOfAll = 6;
 /// How far from its goal a particle may end, in mean edge lengths, before planes are measured again on the

@@ -12,7 +12,7 @@
 
 namespace echinus {
 
-/// What is known about the surface around each particle since the last query of the map: a ball without
+/// The knowledge about the surface around each particle since the last query of the map: a ball without
 /// surface, and a contact plane if one was near. As long as a particle stays in the ball, at a distance from
 /// the surface, the map need not be queried again: the distance changes by no more than the particle's
 /// displacement.
