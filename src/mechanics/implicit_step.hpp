@@ -53,10 +53,10 @@ struct StepReport {
 };
 
 /// Steps of a deformable's motion: each finds a minimum of
-///     sum of c m / (2 h^2) |x - y|^2 + elastic energy(x) + contact energy(x), where y is the position to
-/// which inertia and outer forces would lead. It uses Newton's method with a projected Hessian, a line
-/// search, and conjugate gradients preconditioned by multigrid (docs/mechanics.md). Places are in double: the
-/// residual of a stiff material is a small difference of large forces.
+///     sum of c m / (2 h^2) |x - y|^2 + elastic energy(x) + contact energy(x),
+/// where y is the position to which inertia and outer forces would lead. It uses Newton's method with a
+/// projected Hessian, a line search, and conjugate gradients preconditioned by multigrid (docs/mechanics.md).
+/// Positions are in double: the residual of a stiff material is a small difference between large forces.
 class ImplicitStep {
   public:
     explicit ImplicitStep(const ElasticParts& parts);

@@ -36,10 +36,12 @@ inline constexpr float kStrokeWidth = 1.15F;
 
 using Point = std::array<float, 2>;
 
-/// A letter as it is drawn by hand. A path is a sequence of commands, each followed by numbers: M x y
-///   lift the pen and go to (x, y) L x y      line V x y      quarter of an ellipse that leaves vertically
-///   and arrives horizontally H x y      quarter of an ellipse that leaves horizontally and arrives
-///   vertically Q c d x y  quadratic curve with the control point (c, d)
+/// A letter as it is drawn by hand. A path is a sequence of commands, each followed by numbers:
+///   M x y      lift the pen and go to (x, y)
+///   L x y      line
+///   V x y      quarter of an ellipse that leaves vertically and arrives horizontally
+///   H x y      quarter of an ellipse that leaves horizontally and arrives vertically
+///   Q c d x y  quadratic curve with the control point (c, d)
 struct GlyphPath {
     float width;
     const char* path;
