@@ -15,8 +15,8 @@ namespace {
 
 constexpr std::string_view kMagic = "\x93NUMPY";
 
-/// Reads the header's text, a Python dict of which the format allows only this form: {'descr': STRING or
-/// [LIST], 'fortran_order': True or False, 'shape': (COUNT, ...), }
+/// Reads the header's text, a Python dict of which the format allows only this form:
+/// {'descr': STRING or [LIST], 'fortran_order': True or False, 'shape': (COUNT, ...), }
 class DictReader {
   public:
     DictReader(const Input& input, std::string_view text) : input_(input), rest_(text) {}
