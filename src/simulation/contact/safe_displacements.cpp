@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <limits>
 #include <numeric>
 
@@ -76,6 +77,31 @@ SafeDisplacements::Plane SafeDisplacements::plane_between(const ContactSide& sid
     return best;
 }
 
+/// Whether the two elements of a pair stay apart although no single plane separates them along the whole of
+/// their displacements: a sequence of planes does, each measured where the one before reaches its limit
+/// (conservative advancement, Mirtich 1996).
+bool SafeDisplacements::stays_apart(const ContactSide& side, std::size_t index) const {
+    const Pair& pair = side.pairs.pairs()[index];
+    Separation apart = side.pairs.separations()[index];
+    const float kept = apart.gap - room_of(side, apart.gap);
+    const std::size_t moving = side.pairs.moving_count(pair);
+    for (float done = 0;;) {
+        if (!(apart.gap > kept)) return false;
+        const float closing = side.closing_of(pair, apart.normal), room = apart.gap - kept;
+        if (closing * (1 - done) <= room) return true;
+        const float share = room / closing;
+        if (share < threshold::kLeastShareOfPlane) return false;
+        done += share;
+        std::array<Vec3f, 4> points;
+        for (std::size_t k = 0; k < 4; ++k) {
+            const std::uint32_t i = pair.points[k];
+            const Vec3f from = (k < moving ? side.safe : side.obstacle_from())[i];
+            points[k] = from + ((k < moving ? side.base : side.obstacle_places)[i] - from) * done;
+        }
+        apart = separation(pair.kind, points);
+    }
+}
+
 /// How far its particles have been pushed, in all.
 float SafeDisplacements::pushed(const ContactSide& side, std::size_t index) const {
     const Pair& pair = side.pairs.pairs()[index];
@@ -95,7 +121,10 @@ bool SafeDisplacements::correct(ContactSide& side, ScratchVector<float>& enough)
         if (so_far < enough[p]) continue;
         const Plane plane = plane_between(side, p);
         enough[p] = so_far + plane.left() - side.least_gap / 4;
-        if (plane.left() < 0) is_any_pushed = push_apart(side, side.pairs.pairs()[p], plane) || is_any_pushed;
+        if (plane.left() < 0 && stays_apart(side, p))
+            enough[p] = std::nextafter(so_far, std::numeric_limits<float>::infinity());
+        else if (plane.left() < 0)
+            is_any_pushed = push_apart(side, side.pairs.pairs()[p], plane) || is_any_pushed;
     }
     return is_any_pushed;
 }

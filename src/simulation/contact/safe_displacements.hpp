@@ -52,6 +52,7 @@ class SafeDisplacements {
 
     float room_of(const ContactSide& side, float gap) const;
     Plane plane_between(const ContactSide& side, std::size_t index) const;
+    bool stays_apart(const ContactSide& side, std::size_t index) const;
     float pushed(const ContactSide& side, std::size_t index) const;
     bool correct(ContactSide& side, ScratchVector<float>& enough);
     bool push_apart(ContactSide& side, const Pair& pair, const Plane& plane);

@@ -67,6 +67,9 @@ inline constexpr float kLeastGap = 1.0F / (1 << 19);
 /// not push it again; and the largest number of rounds through the pairs.
 inline constexpr float kPushedTo = 0.9F;
 inline constexpr int kMostPushingRounds = 64;
+/// The least share of a displacement for which each of the planes must hold by which two elements are shown
+/// to pass each other. A smaller share proves this for more pairs, and takes more time.
+inline constexpr float kLeastShareOfPlane = 1.0F / 256;
 /// The largest number of rounds in which pairs are listed again because particles end at unexpected
 /// positions; and of times that displacements are halved if those rounds do not suffice, first relative to
 /// those of whole bodies, then with them. After that, only held particles of the stopped bodies move.
