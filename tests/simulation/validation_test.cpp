@@ -211,6 +211,17 @@ TEST(SimulationSetUp, NamesTheFacesWithWhichADeformableBeginsIntersecting) {
     EXPECT_NO_THROW(Simulation(wide, box, test::jakobsen()));
 }
 
+TEST(SimulationSetUp, NamesTheFacesOfAModelByTheirNumbersInItsMesh) {
+    const TriangleMesh ball = make_sphere(1, 30, 15); // its map has the faces in another order
+    const Deformable sheet = sheet_at(0.3, 3, 4);
+    const std::vector<FacePair> pairs = intersecting_pairs({sheet.positions, sheet.faces}, ball);
+    expect_error(ErrorCode::InvalidOptions,
+                 "face " + std::to_string(pairs[0].a) + " of the deformable and face " +
+                     std::to_string(pairs[0].b) + " of collider 0, face " + std::to_string(pairs[1].a) +
+                     " of the deformable and face " + std::to_string(pairs[1].b) + " of collider 0",
+                 [&] { Simulation(sheet, {{.map = ExactMap::build(ball)}}, {}); });
+}
+
 TEST(SimulationSetUp, RefusesADeformableThatLiesOnAModelAsNearAsTheLatticeOfItsMapTells) {
     const std::vector<Collider> table{{.map = ExactMap::build(make_box({4, 4, 1})), .name = "the table"}};
     const SimulationOptions surfaces{.solver = NewtonOptions{.collision = CollisionMode::Surfaces}};

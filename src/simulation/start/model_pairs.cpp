@@ -7,6 +7,7 @@
 #include <echinus/simulation.hpp>
 #include <echinus/surface_queries.hpp>
 
+#include <algorithm>
 #include <utility>
 
 namespace echinus {
@@ -30,6 +31,8 @@ ModelPairs::Found ModelPairs::with(const TriangleMesh& surface) const {
     found.intersecting = intersecting_pairs(moved, in_body_);
     std::erase_if(found.intersecting,
                   [&](const FacePair& pair) { return passes_through(surface.faces[pair.a], passes_); });
+    for (FacePair& pair : found.intersecting) pair.b = map_.face_numbers[pair.b];
+    std::sort(found.intersecting.begin(), found.intersecting.end());
     const float touch = kTouchInSteps * map_.radius / static_cast<float>(kLatticeExtent);
     std::size_t next = 0;
     for (std::uint32_t f = 0; f < surface.faces.size(); ++f) {

@@ -20,7 +20,7 @@ class ModelPairs {
     ModelPairs(const Collider& collider, std::vector<std::uint8_t> passes);
 
     struct Found {
-        std::vector<FacePair> intersecting; ///< ascending
+        std::vector<FacePair> intersecting; ///< ascending; faces of the surface and of the model's mesh
         /// Faces of the surface, ascending; without those that intersect.
         std::vector<std::uint32_t> touching;
     };
