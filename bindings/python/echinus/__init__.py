@@ -1,9 +1,10 @@
-"""Maps of meshes, which tell whether points are inside and how deep, and cloth and soft bodies that collide with them.
+"""Maps of meshes, which tell whether points are inside and how deep they are; also cloth and soft bodies that collide
+with the maps.
 
-All points are in the frame and the unit of the mesh. Arrays of points have the shape ``(..., 3)``, answers
-the shape ``(...)``. A float32 array whose points have three contiguous coordinates is read in place, whatever the
-stride; other arrays are converted to float32 first. Pass the points of a map that is far from 0 as float64: they are
-made relative to its ``origin`` first.
+All points are in the frame and the unit of the mesh. Arrays of points have the shape ``(..., 3)``, and answers keep the
+leading dimensions ``(...)``. A float32 array whose points have three contiguous coordinates is read in place, whatever
+the stride; other arrays are converted to float32 first. If a map is far from 0, pass points as float64: they are made
+relative to its ``origin`` before they are rounded.
 
 Long computations release Python's global interpreter lock. Errors of the C++ library are raised as :class:`Error`
 with its message; arrays of the wrong shape or type raise ``ValueError`` or ``TypeError``.

@@ -1,4 +1,4 @@
-"""python3 -m echinus: what the package does from a shell."""
+"""The command line of the package: python3 -m echinus."""
 
 import io
 import sys
@@ -8,8 +8,8 @@ if __name__ == "__main__":
         from echinus.corpus._command import main, parse
 
         for stream in (sys.stdout, sys.stderr):
-            if isinstance(stream, io.TextIOWrapper):  # names of files may be no text
+            if isinstance(stream, io.TextIOWrapper):  # file names may not be valid text
                 stream.reconfigure(errors="backslashreplace")
         sys.exit(main(parse()))
-    except KeyboardInterrupt:  # while modules are imported; later main() hears it
+    except KeyboardInterrupt:  # while modules are imported; afterwards main() handles it
         sys.exit(130)

@@ -79,25 +79,27 @@ class ColliderState:
 
 
 class ContactPoints(NamedTuple):
-    """The contacts of a frame, of the deformables with models and with themselves.
+    """The contacts of the deformables with models and with themselves in one frame.
 
     Attributes
     ----------
     positions
-        [contact, 3] Positions on the deformable when the contact last exerted a force, in world coordinates.
+        [contact, 3] Points of contact on the deformable when the contact last exerted a force, in world coordinates.
     normals
-        [contact, 3] Unit normals towards the deformable or, in self-collision, its first element.
+        [contact, 3] Unit normals, which point towards the deformable or, in self-collision, towards the first of the
+        two elements in contact.
     gaps
         [contact] The gap when the contact last exerted a force; positive.
     normal_impulses
-        [contact] The impulse of the frame along the normal, on the deformable or its first element, N s.
+        [contact] The impulse of the frame along the normal, N s, on the deformable or, in self-collision, on the first
+        element.
     friction_impulses
         [contact, 3] The impulse of friction in the frame, perpendicular to the normal, N s.
     colliders
         [contact] The index of the collider; -1 for a contact of the deformables with themselves.
     particles
-        [contact, 4] The particles of the deformable's element, followed in self-collision by those of the second one: a
-        vertex and the three corners of a face, or the two ends of each edge; -1 for unused entries.
+        [contact, 4] The particles of the deformable's element in contact, followed in self-collision by those of the
+        second element: a vertex and the three corners of a face, or the two ends of each edge; -1 for unused entries.
     """
 
     positions: NDArray[np.float64]
@@ -117,7 +119,7 @@ class Load(NamedTuple):
     force
         The force, mass * length / s^2; the unit of mass is that of the deformable's masses.
     torque
-        The torque about the collider's position, which moves.
+        The torque about the collider's position, which moves with the collider.
     """
 
     force: Vector
@@ -143,7 +145,7 @@ def pose_at(keys: Sequence[PoseKey], seconds: float) -> PoseKey:
     """The pose at a time, interpolated between two keys: the position linearly, the rotation along the shorter
     arc (slerp).
 
-    Before the first key it is the pose of the first key, and after the last key that of the last.
+    Before the first key, the result is the pose of the first key; after the last key, it is that of the last.
 
     Parameters
     ----------
@@ -211,7 +213,7 @@ class VertexCache:
         return self._cache.end_time
 
     def at(self, seconds: float) -> NDArray[np.float32]:
-        """(vertex_count, 3) The vertices at a time, a new array."""
+        """(vertex_count, 3) The vertices at the given time, in a new array."""
         return self._cache.at(number("seconds", seconds))
 
     def __repr__(self) -> str:
@@ -220,7 +222,7 @@ class VertexCache:
 
 
 def read_vertex_cache(path: Path, mesh: MeshLike, *, frames_per_second: float, animation: str = "") -> VertexCache:
-    """Reads a PC2 point cache, a folder of OBJ files, one for each frame in the order of their names, or an animation.
+    """Reads a PC2 point cache, an animation, or a folder of OBJ files, one for each frame, in the order of their names.
 
     Parameters
     ----------
@@ -232,8 +234,8 @@ def read_vertex_cache(path: Path, mesh: MeshLike, *, frames_per_second: float, a
     Raises
     ------
     Error
-        As :func:`read_mesh` does; ``invalid_mesh`` if the number of vertices, or a face in a folder, differs from the
-        model's.
+        As :func:`read_mesh` does; ``invalid_mesh`` if the number of vertices, or a face in a file of the folder,
+        differs from the model's.
     """
     rate = number("frames_per_second", frames_per_second)
     name = of_kind("animation", animation, str)

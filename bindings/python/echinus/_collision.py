@@ -15,14 +15,14 @@ from echinus._colliders import Collider
 class ParticleCollision:
     """Keeps the particles of any solver out of models.
 
-    After each step of the solver, :meth:`correct` moves particles that entered or crossed a model back out.
-    With exact maps a particle that begins a step outside ends it outside, however fast it or the models move.
-    Several threads may call its methods, but only one computes at a time.
+    After each step of the solver, :meth:`correct` moves particles that entered or crossed a model back out. With exact
+    maps of closed meshes, a particle that begins a step outside ends it outside, however fast it or the models move,
+    within the limits of docs/limits.md. Several threads may call its methods, but only one computes at a time.
 
     Parameters
     ----------
     colliders
-        In their initial poses; their velocities are ignored.
+        The models in their initial poses; their velocities are ignored.
     thickness
         The distance that particles keep from the surface (0 to 1e9).
     friction
@@ -59,14 +59,14 @@ class ParticleCollision:
         Parameters
         ----------
         collider
-            Its index.
+            The index of the collider.
         rotation
             Unit quaternion w, x, y, z.
         """
         self._collision.set_collider_pose(index("collider", collider), vector("position", position), quaternion("rotation", rotation))
 
     def place_collider(self, collider: int, position: Sequence[float], rotation: Sequence[float] = (1, 0, 0, 0)) -> None:
-        """Places a collider at a pose at once, as after a cut in a film: nothing is swept in between."""
+        """Places a collider at a pose at once, as after a cut in a film: no particle is swept along the jump."""
         self._collision.place_collider(index("collider", collider), vector("position", position), quaternion("rotation", rotation))
 
     def set_collider_friction(self, collider: int, friction: float) -> None:
@@ -84,17 +84,17 @@ class ParticleCollision:
     ) -> NDArray[np.uint32]:
         """Corrects the particles after a step of the solver, in place, and moves the colliders.
 
-        A particle whose position is not finite is not changed and collides with nothing. For a particle whose previous
-        position is not that at the end of the last step, collision starts afresh.
+        A particle whose position is not finite is not changed and collides with nothing. Collision starts afresh for a
+        particle whose previous position is not the one at which the last step ended.
 
         Parameters
         ----------
         previous_positions
             (n, 3) The positions at the start of the step.
         positions
-            (n, 3) The solver's positions, corrected in place, so contiguous float32.
+            (n, 3) The solver's positions, in a contiguous float32 array, which is corrected in place.
         velocities
-            (n, 3) Corrected, too, in units per second.
+            (n, 3) The velocities, in units per second, which are corrected, too.
         inverse_masses
             (n,) 1 / mass, in any unit; 0 for pinned particles, which no collider pushes.
         seconds
@@ -113,25 +113,26 @@ class ParticleCollision:
 
     @property
     def lost_count(self) -> int:
-        """The number of times that a particle ended a step inside an exact map of which it had once been outside, or on
-        the other side of its surface."""
+        """The number of times that a particle that had once been outside an exact map ended a step inside it or on the
+        other side of its surface."""
         return self._collision.lost_count
 
 
 class SurfaceCollision:
     """Keeps the faces that join the particles of any solver off models and off each other.
 
-    After :meth:`correct` no face intersects a model or another face, within the limits of docs/limits.md.
-    Several threads may call its methods, but only one computes at a time.
+    After :meth:`correct` no face intersects a model or, with ``self_collision``, another face, within the limits of
+    docs/limits.md. Several threads may call its methods, but only one computes at a time.
 
     Parameters
     ----------
     positions
-        (n, 3) The initial positions, at which no faces may intersect (but see ``untangle``).
+        (n, 3) The initial positions. No face may intersect a model or, with ``self_collision``, another face, and no
+        particle may be inside a closed model (but see ``untangle``).
     faces
         (m, 3) The faces between the particles.
     colliders
-        In their initial poses; their velocities are ignored.
+        The models in their initial poses; their velocities are ignored.
     thickness
         The distance to keep from colliders (0 to 1e9); the effective value is at least a fiftieth of the mean edge
         length.
@@ -179,7 +180,7 @@ class SurfaceCollision:
         Parameters
         ----------
         collider
-            Its index.
+            The index of the collider.
         rotation
             Unit quaternion w, x, y, z.
         """
@@ -199,9 +200,9 @@ class SurfaceCollision:
         Parameters
         ----------
         positions
-            (n, 3) The solver's positions, corrected in place, so contiguous float32.
+            (n, 3) The solver's positions, in a contiguous float32 array, which is corrected in place.
         velocities
-            (n, 3) Corrected, too, in units per second.
+            (n, 3) The velocities, in units per second, which are corrected, too.
         seconds
             The duration of the step.
 

@@ -15,9 +15,9 @@ from echinus._tetrahedra import TetrahedralMesh
 
 
 class Deformable:
-    """Particles, their constraints and materials; :func:`make_cloth` and :func:`make_soft_body` make one.
+    """Particles with their constraints and materials, as made by :func:`make_cloth` or :func:`make_soft_body`.
 
-    It is immutable: a simulation copies it.
+    A deformable is immutable: a simulation works on a copy.
     """
 
     _deformable: _core.Deformable
@@ -192,8 +192,8 @@ def make_soft_body(
     Raises
     ------
     Error
-        ``invalid_mesh`` as :func:`require_valid_tetrahedra` does, and when no tetrahedron uses a vertex;
-        ``invalid_options`` for numbers out of range and vertices that the mesh does not have.
+        ``invalid_mesh`` as :func:`require_valid_tetrahedra` does, and for a vertex that no tetrahedron uses;
+        ``invalid_options`` for numbers out of range and for vertices that the mesh does not have.
     """
     options = locals()
     body = of_kind("mesh", mesh, TetrahedralMesh, "; tetrahedralize() makes one from a surface")
@@ -203,8 +203,8 @@ def make_soft_body(
 def combine(parts: Sequence[Deformable]) -> Deformable:
     """Combines several deformables into one; with ``collision="surfaces_and_self"`` they collide with each other.
 
-    The particles of the parts follow each other in order. Masses do not change, so they must be in the same unit: see
-    :func:`with_masses_times`.
+    The particles are those of the parts, one part after the other. Masses do not change, so they must be in the same
+    unit: see :func:`with_masses_times`.
     """
     return Deformable._of(_core.combine([part._deformable for part in list_of_kind("parts", parts, Deformable)]))
 
@@ -222,7 +222,7 @@ def with_masses_times(factor: float, deformable: Deformable) -> Deformable:
 def passing_through(collider: int, deformable: Deformable) -> Deformable:
     """Returns the deformable without collision with one collider, given by its index in the simulation.
 
-    After :func:`combine` this applies to the pair of this part and that collider.
+    After :func:`combine`, this holds for this part only.
     """
     core = of_kind("deformable", deformable, Deformable)._deformable
     return Deformable._of(_core.passing_through(whole("collider", collider, 0), core))

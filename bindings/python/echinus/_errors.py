@@ -19,7 +19,7 @@ ErrorCode = Literal[
 
 ``unreadable``, ``unwritable``: the system refused a file; ``wrong_format``, ``damaged``, ``unsupported_version``: the
 contents of a file; ``invalid_mesh``, ``invalid_options``, ``invalid_scene``: an argument; ``diverged``: a simulation
-left all bounds.
+exceeded its bounds.
 """
 
 
@@ -34,7 +34,7 @@ class Error(Exception):
         The kind of error, for programs: ``unreadable`` and ``unwritable`` if the system refuses a file;
         ``wrong_format``, ``damaged`` and ``unsupported_version`` for the contents of a file;
         ``invalid_mesh``, ``invalid_options`` and ``invalid_scene`` for arguments; ``diverged`` for a
-        simulation that left all bounds.
+        simulation that exceeded its bounds.
     """
 
     code: ErrorCode

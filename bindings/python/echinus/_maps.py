@@ -67,8 +67,8 @@ class Contacts(_Answers):
 
     @property
     def point(self) -> NDArray[np.float32] | NDArray[np.float64]:
-        """(..., 3) The target of the push-out: the nearest point of the surface or, with a distance map, the point on
-        the ray from its centre. In float64 for a map with an origin."""
+        """(..., 3) The target of the push-out: the nearest point of the surface or, with a distance map, a surface
+        point on the particle's ray from the centre. The type is float64 if the map's :attr:`origin` is not 0."""
         return self._place()
 
     @property
@@ -111,7 +111,7 @@ class SweepHits(_Answers):
 
     @property
     def point(self) -> NDArray[np.float32] | NDArray[np.float64]:
-        """(..., 3) start + fraction (end - start). In float64 for a map with an origin."""
+        """(..., 3) start + fraction (end - start). The type is float64 if the map's origin is not 0."""
         return self._place()
 
     @property
@@ -151,7 +151,7 @@ class ExactMapStatistics:
     certain_share
         Share of the bounding sphere's volume in which the map stores the answer; 1 for a closed mesh.
     uncertain_directions
-        Share of the directions from the centre along which an answer is computed somewhere.
+        Share of the directions from the centre in which, at some distance, the answer is computed instead of stored.
     """
 
     face_count: int
@@ -172,9 +172,10 @@ class DistanceMapStatistics:
     max_entries
         The largest number of crossings along one direction.
     corrected_entries, clamped_entries
-        The number of entries that the correction moved, and of those whose correction was cut short.
+        The number of entries that the correction moved, and the number of those whose correction was cut short.
     wrong_parity_share
-        Share of directions that see a hole; 0 for a closed mesh.
+        Share of the directions in which the number of crossings has the wrong parity because of a hole; 0 for a closed
+        mesh.
     """
 
     face_count: int
@@ -220,7 +221,7 @@ class _Map(Generic[CoreMap]):
         points : array_like (..., 3)
             A point with NaN or infinity has no contact.
         margin
-            Points outside also get a contact if the surface is at most this far away; ``inf`` gives one to all points.
+            Points outside also get a contact if the surface is at most this far away; ``inf``: however far away it is.
         threads
             0: all cores. The answers do not depend on it.
         out : Contacts, optional
@@ -262,7 +263,7 @@ class _Map(Generic[CoreMap]):
 
     @property
     def source_hash(self) -> int:
-        """Identifies the mesh and the options from which the map was built."""
+        """A hash that identifies the mesh and the options from which the map was built."""
         return self._built.source_hash
 
     def __reduce__(self) -> tuple[Any, ...]:
@@ -280,7 +281,7 @@ class _Map(Generic[CoreMap]):
 
 
 class ExactMap(_Map[_core.ExactMap]):
-    """The map whose answers are exact on its lattice; a lattice step is 1.9e-6 of the bounding radius.
+    """A map whose answers are exact on its lattice; a lattice step is 1.9e-6 of the bounding radius.
 
     Parameters
     ----------
@@ -358,7 +359,7 @@ class ExactMap(_Map[_core.ExactMap]):
         Parameters
         ----------
         points : array_like (..., 3)
-            A point with NaN has the distance NaN, and one with infinity is infinitely far.
+            The distance is NaN for a point with NaN, and infinite for one with infinity.
         gradient
             Also return the unit vectors along which the distances grow fastest; 0 for points that are not
             finite.
@@ -408,7 +409,7 @@ class ExactMap(_Map[_core.ExactMap]):
         Parameters
         ----------
         start, end : array_like (..., 3)
-            Shapes are broadcast. A segment with NaN or infinity meets nothing.
+            The ends of the segments; their shapes are broadcast. A segment with NaN or infinity has no crossing.
         threads
             0: all cores. The answers do not depend on it.
         """
@@ -432,7 +433,8 @@ class DistanceMap(_Map[_core.DistanceMap]):
     Parameters
     ----------
     mesh
-        Anything with ``vertices`` and ``faces``, closed and counter-clockwise seen from outside.
+        Anything with ``vertices`` and ``faces``; it should be closed, and its faces counter-clockwise seen from
+        outside.
     directions
         The numbers of samples of longitude and of colatitude; (200, 200) by default. Only for the grids ``"spherical"``
         and ``"ellipsoidal"``.

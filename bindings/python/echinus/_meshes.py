@@ -1,4 +1,4 @@
-"""Meshes: files, reports, repair, generators, and references by brute force."""
+"""Meshes: files, reports, repair, generators, and brute-force references."""
 
 from __future__ import annotations
 
@@ -35,8 +35,8 @@ class Mesh:
     Parameters
     ----------
     vertices : array_like (n, 3)
-        Positions, rounded to float32 if float32 can represent the shape. For a mesh far from 0, such as a building in
-        geographic coordinates, it cannot, so they stay float64.
+        Positions, rounded to float32 if float32 can represent the shape. It cannot if the mesh is far from 0, such as a
+        building in geographic coordinates; positions then stay float64.
     faces : array_like (m, 3)
         Whole numbers: the vertices of each triangle, counter-clockwise seen from outside.
 
@@ -77,7 +77,7 @@ def as_mesh(mesh: MeshLike) -> Mesh:
     Raises
     ------
     TypeError
-        The object has no such attributes.
+        The object does not have these attributes.
     """
     return _mesh_of(mesh, "mesh")
 
@@ -192,15 +192,15 @@ def weld(mesh: MeshLike) -> Mesh:
 
 @dataclass(frozen=True)
 class RepairReport:
-    """The changes that :func:`repair` made. Faces are given by their indices in the given mesh, after which faces that
-    close holes are numbered.
+    """The changes that :func:`repair` made. Faces are identified by their indices in the original mesh; faces that
+    close holes have the indices after those.
 
     Attributes
     ----------
     holes_left
-        The number of larger holes and rims of sheets; 0 unless holes were to be closed.
+        The number of holes that were too large to be closed, and of rims of sheets; 0 if no holes were to be closed.
     sheets_thickened
-        The number of pieces of surface between rims.
+        The number of sheets, that is, pieces of surface between rims, that were thickened.
     faces_added
         The number of faces that fill seams, close holes and thicken sheets.
     vertices_welded
@@ -329,23 +329,23 @@ def unsigned_distance(mesh: MeshLike, points: ArrayLike, *, threads: int = 1) ->
 
 
 def intersecting_pairs(a: MeshLike, b: MeshLike) -> NDArray[np.uint32]:
-    """The intersecting faces of ``a`` and ``b``, by exact tests; touching counts.
+    """The pairs of intersecting faces of ``a`` and ``b``, found by exact tests; faces that touch count as intersecting.
 
     Returns
     -------
     ndarray (n, 2) of uint32
-        A face of ``a`` and one of ``b``, ascending.
+        The indices of a face of ``a`` and of one of ``b``; the pairs ascend.
     """
     return _core.intersecting_pairs(*arrays_of(a, "a"), *arrays_of(b, "b"))
 
 
 def self_intersecting_pairs(mesh: MeshLike) -> NDArray[np.uint32]:
-    """The faces of a mesh that intersect other than in shared corners and edges, by exact tests.
+    """The pairs of faces of a mesh that intersect other than in shared corners and edges, found by exact tests.
 
     Returns
     -------
     ndarray (n, 2) of uint32
-        Two faces, ascending.
+        The indices of two faces; the pairs ascend.
     """
     return _core.self_intersecting_pairs(*arrays_of(mesh))
 
@@ -362,7 +362,7 @@ class Intersections:
         The polylines along which faces cross. Coplanar faces, faces without area and faces that touch in a
         point have no curve.
     closed : tuple of bool
-        For each curve whether a segment joins its last point to its first.
+        For each curve: whether a segment joins its last point to its first.
     length
         The total length of all curves.
     """
@@ -379,7 +379,7 @@ def intersections(a: MeshLike, b: MeshLike | None = None) -> Intersections:
     Raises
     ------
     Error
-        ``invalid_mesh``, also for more than 33 554 432 pairs.
+        ``invalid_mesh`` for an invalid mesh, or for more than 33 554 432 pairs of intersecting faces.
     """
     if b is None:
         return Intersections(**_core.self_intersections(*arrays_of(a, "a")))
@@ -395,7 +395,7 @@ class Penetration:
     vertex_count
         The number of vertices inside.
     deepest_vertex
-        ``None`` without a vertex inside.
+        The index of the deepest vertex; ``None`` if no vertex is inside.
     depth
         The distance of the deepest vertex from the other surface.
     """
@@ -416,7 +416,8 @@ class CheckedMeshes:
     found
         Their intersections. There are no pairs if one mesh is entirely inside the other.
     a_in_b, b_in_a
-        ``None`` if the other mesh is not closed or no exact map of it is possible, and for a mesh and itself.
+        The vertices of one mesh inside the other; ``None`` if the other mesh is not closed or no exact map of it is
+        possible, or if both are the same mesh.
     """
 
     a: int
@@ -427,7 +428,7 @@ class CheckedMeshes:
 
 
 def check(meshes: Sequence[MeshLike], *, threads: int = 0) -> list[CheckedMeshes]:
-    """Finds which meshes intersect each other or themselves, along which curves and how deep.
+    """Finds the meshes that intersect each other or themselves, the curves along which they do, and the depths.
 
     Parameters
     ----------
@@ -439,13 +440,13 @@ def check(meshes: Sequence[MeshLike], *, threads: int = 0) -> list[CheckedMeshes
     Returns
     -------
     list of CheckedMeshes
-        The pairs that intersect, or of which one mesh has a vertex inside the other, and the meshes that intersect
-        themselves, ascending.
+        The pairs of meshes that intersect, or of which one has a vertex inside the other, and the meshes that intersect
+        themselves; ascending by index.
 
     Raises
     ------
     Error
-        ``invalid_mesh``; the message names the number of the mesh.
+        ``invalid_mesh``; the message gives the index of the mesh.
     """
     found = _core.check([arrays_of(mesh, f"meshes[{i}]") for i, mesh in enumerate(meshes)], threads_of(threads))
     return [
@@ -469,7 +470,7 @@ def make_torus(
 
 
 def make_sphere(radius: float = 1, meridian_count: int = 60, parallel_count: int = 30) -> Mesh:
-    """A sphere of meridians and rows of faces, with its poles on the z axis."""
+    """A sphere of ``parallel_count`` rows of faces, with its poles on the z axis."""
     return Mesh(
         *_core.make_sphere(
             number("radius", radius), whole("meridian_count", meridian_count), whole("parallel_count", parallel_count)

@@ -72,9 +72,10 @@ class SimulationProfile:
     query_count, contact_count, map_query_count
         Numbers of queries of particles, of contacts found, and of queries that needed the map.
     rescued_count
-        Number of times that a particle was moved back because it would have passed through an exact map.
+        Number of times that a particle was moved back because it would otherwise have passed through an exact map.
     lost_count
-        Number of times that a particle ended a frame inside an exact map or on the other side of its surface.
+        Number of times that a particle that had once been free of an exact map ended a frame inside it or on the other
+        side of its surface.
     truncated_count
         With surface collision: number of times that the displacement of a particle was cut short to avoid a contact.
     measured_pair_count
@@ -260,11 +261,11 @@ class Simulation:
         scene
             The path of a JSON file, or its content; docs/scenes.md documents every key.
         model
-            A mesh, which the scene may repair, or a map in place of the scene's model. For a scene with
-            several colliders this is a list with one for each; None selects the scene's own. For a collider with a
-            vertex cache it must be a mesh.
+            A mesh, which the scene may repair, or a map that replaces the scene's model. For a scene with several
+            colliders, pass a list with one entry for each; None keeps the scene's own model. For a collider with a
+            vertex cache the entry must be a mesh.
         cloth, rest_cloth
-            Meshes in place of the files of the scene's cloth.
+            Meshes that replace the files of the scene's cloth.
         model_folders
             A folder, or several, in which the scene's files are looked up first; the scene's folder, its ``../models``,
             and ``models`` in the working folder follow.
@@ -327,7 +328,7 @@ class Simulation:
         self._simulation.step(whole("frame_count", frame_count))
 
     def run(self, frame_limit: int | None = None) -> bool:
-        """Steps until the simulation is at rest or reaches the frame limit, by default that of the scene.
+        """Steps until the simulation is at rest or reaches the frame limit, by default :attr:`frame_limit`.
 
         Returns
         -------
@@ -413,7 +414,8 @@ class Simulation:
         return SimulationProfile(**self._simulation.profile)
 
     def set_collider_velocity(self, collider: int, linear: Sequence[float], angular: Sequence[float]) -> None:
-        """Sets the velocities of a model, in units and radians per second, which it keeps until they are set again."""
+        """Sets the velocities of a model, in units and radians per second. The model keeps them until they are set
+        again."""
         self._simulation.set_collider_velocity(
             index("collider", collider), vector("linear", linear), vector("angular", angular)
         )
@@ -436,8 +438,8 @@ class Simulation:
         """Makes a model follow keyframes: each frame moves it to the pose that :func:`pose_at` returns for the frame's
         end.
 
-        The model starts from its present pose, so place it at the present ``pose_at`` first. Without keys it does not
-        move.
+        The model starts from its present pose, so first place it where the keyframes have it now. Without keys it does
+        not move.
 
         Parameters
         ----------
@@ -454,7 +456,7 @@ class Simulation:
         Parameters
         ----------
         vertices : array_like (vertex_count, 3)
-            Positions in the model's own frame, as many as the mesh from which its map was built has vertices, in the
+            Positions in the model's own frame: one for each vertex of the mesh from which its map was built, in the
             same order.
 
         Raises
@@ -477,8 +479,9 @@ class Simulation:
         """The load that the deformables exerted on a model in the last frame, averaged over the frame; 0
         before the first.
 
-        It is caused by contact and friction, in N and N m, and always 0 with ``jakobsen``. A program that applies it to
-        a rigid body and moves the model with the body exchanges momentum with the deformables.
+        It is caused by contact, friction and attached particles, in N and N m. With ``jakobsen`` it is always 0. A
+        program that applies it to a rigid body and moves the model with the body exchanges momentum with the
+        deformables.
         """
         return Load(*self._simulation.load_on(index("collider", collider)))
 
@@ -502,8 +505,9 @@ class Simulation:
     def contact_points(self) -> ContactPoints:
         """Copies of the contacts that were recorded in the last frame.
 
-        Their impulses divided by the time step sum to the opposite of :meth:`load_on` of each model, except for the
-        loads of attached particles and of particles whose displacement was truncated. ``jakobsen`` records none.
+        For each model, the impulses of its contacts divided by the time step sum to the opposite of :meth:`load_on`,
+        except for the loads of attached particles and of particles whose displacement was truncated. ``jakobsen``
+        records none.
         """
         return ContactPoints(*self._simulation.contact_points())
 
@@ -553,7 +557,7 @@ class Simulation:
 
 
 def _one_for_each(model: _Model | Sequence[_Model], collider_count: int) -> list[_Model]:
-    """The files or meshes that are given in place of the model of each collider."""
+    """The mesh or map that replaces the model of each collider; None for a model of the scene."""
     if model is None:
         return [None] * collider_count
     models = list(model) if isinstance(model, (list, tuple)) else [model]

@@ -58,8 +58,8 @@ class TetrahedraFile:
     mesh
         The body; it is valid, and every vertex is used.
     turned_tetrahedra
-        The number of tetrahedra with negative volume, in which two corners were exchanged: their order is a convention of
-        the file.
+        The number of tetrahedra with negative volume, of which two corners were exchanged: the order of the corners
+        depends on the convention of the file.
     dropped_vertices
         The number of vertices that no tetrahedron uses.
     """
@@ -72,8 +72,8 @@ class TetrahedraFile:
 def read_tetrahedra(path: Path) -> TetrahedraFile:
     """Reads ``.msh`` (Gmsh 2.2 and 4.1), ``.vtk`` (legacy, an unstructured grid) or TetGen's ``.node`` with ``.ele``.
 
-    Either file of TetGen's pair may be named. Points, lines, planar cells and data are ignored; volume cells other than
-    four-node tetrahedra are refused. Positions are not welded.
+    The path may be that of either file of TetGen's pair. Points, lines, planar cells and data are ignored; volume cells
+    other than four-node tetrahedra are refused. Positions are not welded.
 
     Raises
     ------
@@ -125,7 +125,7 @@ class Tetrahedralization:
     size
         The size with which the lattice was made.
     removed_tetrahedra
-        The number of tetrahedra left out because parts of the body would have met in only an edge or a vertex.
+        The number of tetrahedra left out because parts of the body would have met only in an edge or a vertex.
     """
 
     mesh: TetrahedralMesh
@@ -150,7 +150,7 @@ def tetrahedralize(
     Parameters
     ----------
     model
-        The map of a surface; for an open one the winding number decides what is inside.
+        The map of a surface; if the surface is open, the winding number decides what is inside.
     size
         The edge of the lattice's cubes, in the model's unit. Set either this or ``count``; 0: not set (not
         negative).
@@ -177,9 +177,10 @@ def tetrahedralize(
 
 
 def require_valid_tetrahedra(mesh: TetrahedralMesh) -> None:
-    """Raises an error unless all tetrahedra are positive, and two with a common face lie on opposite sides of it.
+    """Raises an error unless all tetrahedra have positive volumes, and any two with a common face lie on opposite sides
+    of it.
 
-    Unused vertices may have any values. Signs are exact.
+    Unused vertices may have any values. The signs of volumes are exact.
 
     Raises
     ------
@@ -190,7 +191,8 @@ def require_valid_tetrahedra(mesh: TetrahedralMesh) -> None:
 
 
 def boundary(mesh: TetrahedralMesh) -> Mesh:
-    """The faces that belong to only one tetrahedron, outward, with all vertices of the body, including interior ones.
+    """The faces that belong to only one tetrahedron, oriented outwards. The mesh has all vertices of the body,
+    including interior ones.
 
     Raises
     ------
@@ -209,11 +211,11 @@ class TetrahedralReport:
     vertex_count
         The number of vertices that tetrahedra use.
     volume, least_volume
-        The volume of all tetrahedra, and of the smallest.
+        The volume of all tetrahedra, and that of the smallest one.
     least_angle_deg, greatest_angle_deg
-        The extreme angles between two faces of a tetrahedron.
+        The smallest and the largest angle between two faces of a tetrahedron.
     boundary
-        The report of :func:`inspect` on :func:`boundary`.
+        The report of :func:`inspect` on the result of :func:`boundary`.
     """
 
     tetrahedron_count: int
@@ -251,13 +253,15 @@ class BoundaryDistance:
 
 
 def measure_distance(mesh: TetrahedralMesh, model: ExactMap, *, threads: int = 0) -> BoundaryDistance:
-    """Compares a body's boundary with a model: at the corners of the faces of both, and at points between them."""
+    """Measures the distances between a body's boundary and a model, at the corners of the faces of both and at points
+    between the corners."""
     core = of_kind("model", model, ExactMap)._built
     return BoundaryDistance(*_core.measure_distance(*_arrays_of(mesh), core, threads_of(threads)))
 
 
 class Embedding:
-    """The positions of points in a body, so that they can follow its vertices; :func:`embed` makes one."""
+    """The positions of points relative to a body, so that the points can follow its vertices; :func:`embed` makes
+    one."""
 
     _embedding: _core.Embedding
 
@@ -272,7 +276,7 @@ class Embedding:
         Parameters
         ----------
         positions : array_like (vertex_count, 3)
-            Positions of the body's vertices; in a simulation with other particles they are a slice of its positions.
+            Positions of the body's vertices: if a simulation also has other particles, a slice of its positions.
         out : ndarray (n, 3) of float32, optional
             Receives the answers.
 
@@ -284,12 +288,13 @@ class Embedding:
 
     @property
     def vertices(self) -> NDArray[np.uint32]:
-        """(n, 4) The corners of each point's tetrahedron, a new array."""
+        """(n, 4) The corners of each point's tetrahedron, in a new array."""
         return self._embedding.vertices
 
     @property
     def weights(self) -> NDArray[np.float32]:
-        """(n, 4) The weights of these corners, whose sum is 1; outside the tetrahedron some are negative."""
+        """(n, 4) The weights of these corners. They sum to 1; if the point is outside the tetrahedron, some are
+        negative."""
         return self._embedding.weights
 
     def __len__(self) -> int:
@@ -300,7 +305,7 @@ class Embedding:
 
 
 def embed(mesh: TetrahedralMesh, points: ArrayLike, *, threads: int = 0) -> Embedding:
-    """Finds the tetrahedron that contains each point, or else the nearest one, and the point's weights there.
+    """Finds for each point the tetrahedron that contains it, or else the nearest one, and the weights of its corners.
 
     Parameters
     ----------

@@ -18,9 +18,9 @@ from echinus.corpus._sources import Mesh, find_meshes
 from echinus.corpus._verification import examine
 
 DEFAULT = Sampling()
-MOST = 2**32 - 1  # of workers, parts and the like
+MOST = 2**32 - 1  # the largest number of workers, parts and the like
 WRONG_OPTIONS = 2  # exit codes
-ONLY_SURPLUS = 3  # of --verify if all labels are right, but there are surplus files
+ONLY_SURPLUS = 3  # the exit code of --verify if all labels are right, but there are surplus files
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -108,7 +108,7 @@ def _meshes_of(a: argparse.Namespace) -> list[Mesh]:
 
 def _label(corpus: Corpus, a: argparse.Namespace, memory: int) -> int:
     if a.scheduler is not None:
-        logging.disable()  # Dask's: it tells a lost connection as tracebacks, besides our sentence
+        logging.disable()  # Dask's log reports a lost connection by tracebacks, in addition to our sentence
     summary = label(corpus, workers=a.workers, scheduler=a.scheduler, memory=memory, progress=sys.stderr)
     if summary.already:
         print(f"{counted(summary.already)} done already", file=sys.stderr)

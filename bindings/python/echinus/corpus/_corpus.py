@@ -33,7 +33,7 @@ class Corpus:
     archive_size
         Number of meshes in each archive of ``"webdataset"``. The archive of a mesh depends only on the meshes.
     max_bytes
-        Larger mesh files are refused.
+        The largest size of a mesh file; larger files are refused.
     shard
         (i, n): only part i of n parts of the work, counted from 0.
     """
@@ -62,7 +62,8 @@ class Corpus:
             raise ValueError(f"shard must be (i, n) with i from 0 to n - 1, not {self.shard}")
 
     def groups(self) -> list[tuple[str | None, tuple[Mesh, ...]]]:
-        """The groups of meshes of all parts; a group is labelled together, and has an archive or None."""
+        """The groups of meshes of all parts, each with the name of its archive or None. The meshes of a group are labelled
+        together."""
         if self.form != "webdataset":
             return [(None, (mesh,)) for mesh in self.meshes]
         starts = range(0, len(self.meshes), self.archive_size)

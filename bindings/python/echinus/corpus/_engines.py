@@ -78,7 +78,7 @@ def _serve(pipe: Connection, memory: int) -> None:
     resource.setrlimit(resource.RLIMIT_AS, (memory, memory))
     _keep_freed_memory()
     try:
-        mmap.mmap(-1, 1).close()  # not malloc: it may have kept a page though the process alone exceeds the limit
+        mmap.mmap(-1, 1).close()  # not malloc, which may have kept a page although the process already exceeds the limit
     except OSError:
         pipe.send(MemoryError())
         return
@@ -89,7 +89,7 @@ def _serve(pipe: Connection, memory: int) -> None:
             return
         try:
             pipe.send(run(task))
-        except Exception as error:  # for the one who started the run: a full disk, or a fault of ours
+        except Exception as error:  # the process that started the run raises it: a full disk, or a fault of ours
             pipe.send(error)
 
 
@@ -97,7 +97,7 @@ def _serve(pipe: Connection, memory: int) -> None:
 def _deaf_to_interrupts() -> Iterator[None]:
     """Makes processes that are started in this context ignore Ctrl-C; the process that distributes the tasks handles
     it, and ends its workers."""
-    resource_tracker.ensure_running()  # its start, which comes with the first process, would unblock the signal
+    resource_tracker.ensure_running()  # it would otherwise start with the first process, and unblock the signal
     before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
     try:
         yield
@@ -117,8 +117,8 @@ def _end_with_parent() -> None:
 
 
 def _keep_freed_memory() -> None:
-    """Samples and labels are arrays of about a megabyte. By default the C library returns each freed array to the system, and
-    mapping the pages of the next one takes longer than computing its numbers."""
+    """Makes the C library keep freed memory. Samples and labels are arrays of about a megabyte. By default the C library returns
+    each freed array to the system, and mapping the pages of the next one takes longer than computing its numbers."""
     with contextlib.suppress(AttributeError):  # other C libraries have no such options
         set_option = ctypes.CDLL(None).mallopt
         trim_threshold, mmap_threshold = -1, -3
@@ -177,7 +177,7 @@ def dask_cluster(scheduler: str, progress: TextIO | None) -> Iterator[Engine]:
     """
     dask = _distributed()
     try:
-        dask.comm.get_address_host_port(scheduler)  # the client takes seconds, and a traceback, to complain
+        dask.comm.get_address_host_port(scheduler)  # the client would complain only after seconds, with a traceback
     except ValueError as error:
         raise MalformedAddress(f"scheduler {scheduler!r} is not an address, for instance tcp://host:8786 ({error})") from None
     try:

@@ -27,7 +27,7 @@ def names_of(name: str, form: Format) -> list[str]:
 
 
 def files_of(samples: Samples, name: str, form: Format) -> dict[str, bytes]:
-    """The files of one mesh, by their paths below the output folder, or in the archive of its shard."""
+    """The files of one mesh, by their paths below the output folder or in the archive."""
     if form == "occupancy":
         return _occupancy_networks(samples, name)
     if form == "deepsdf":

@@ -22,7 +22,7 @@ from echinus.corpus._corpus import UNFINISHED, Corpus
 def alone(corpus: Corpus) -> Iterator[None]:
     """Holds the locks that exclude other runs on the same part, or on the whole.
 
-    All runs lock the folder; runs on parts share this lock. So no run removes files while another one works.
+    All runs lock the folder; runs on parts share this lock. So no run removes files while a different run is in progress.
 
     Raises
     ------
@@ -57,10 +57,10 @@ def one_at_a_time(corpus: Corpus) -> Iterator[None]:
 
 @contextlib.contextmanager
 def unfinished_files(corpus: Corpus) -> Iterator[str]:
-    """The path of a new folder for the files that a run is writing. Within :func:`alone`."""
+    """The path of a new folder for the files that a run is writing. Used within :func:`alone`."""
     i, n = corpus.shard
     unfinished, prefix = pathlib.Path(corpus.output, UNFINISHED), f"part-{i}-of-{n}-"
-    for left in unfinished.glob(f"{prefix}*"):  # by a run that was killed
+    for left in unfinished.glob(f"{prefix}*"):  # the folder of a run that was killed
         shutil.rmtree(left, ignore_errors=True)
     folder = os.path.abspath(unfinished / f"{prefix}{secrets.token_hex(8)}")
     os.mkdir(folder)
@@ -76,12 +76,12 @@ def _part_locked(path: pathlib.Path) -> Iterator[None]:
         while True:
             file = stack.enter_context(_opened(path))
             _lock(file.fileno(), fcntl.LOCK_NB | fcntl.LOCK_EX)
-            if _is(file, path):  # else an earlier run removed it meanwhile
+            if _is(file, path):  # otherwise an earlier run has removed it in the meantime
                 break
         try:
             yield
         finally:
-            if _is(file, path):  # else a whole run has removed it with its folder
+            if _is(file, path):  # otherwise a run on the whole corpus has removed it with its folder
                 path.unlink()
             with contextlib.suppress(OSError):  # other files are in it, or it is gone
                 path.parent.rmdir()

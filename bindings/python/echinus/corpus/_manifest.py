@@ -57,7 +57,7 @@ class Manifest:
             if not all(name in record_of and "again" not in record_of[name] for name in names):
                 return False
             files = {file for name in names for file in record_of[name].get("files", [])}
-            if task.archive is not None:  # no other one: a corpus that has changed fills its archives anew
+            if task.archive is not None:  # no other archive and no other mesh: a changed corpus fills its archives differently
                 return files <= {task.archive} <= whole and meshes_of[task.archive] <= names
             return files <= whole
 
@@ -69,8 +69,8 @@ class Manifest:
         return [task for task in tasks if task.meshes in finished], [task for task in tasks if task.meshes not in finished]
 
     def keep(self, finished: Sequence[Task], left: Iterable[Task]) -> None:
-        """Drops the records of other tasks, and removes the files of those that remain: a mesh that is labelled again may be
-        refused. Archives are overwritten, and files that belong to no task stay."""
+        """Keeps only the records of finished tasks, and removes the files of the tasks that are left, since a mesh that is
+        labelled again may be refused. Archives are overwritten, and files that belong to no task stay."""
         for name in (name for task in left for name, _ in task.meshes):
             for file in names_of(name, self.settings["format"]):
                 _remove(file, self.path.parent)
@@ -84,7 +84,7 @@ class Manifest:
             file.writelines(_line(record) for record in records)
 
     def sort(self) -> None:
-        """Sorts the lines, so that the same labels give the same bytes in whatever order they arrived."""
+        """Sorts the lines, so that the bytes do not depend on the order in which the labels arrived."""
         self._write(r for r in records_of(self.path) if "echinus" not in r)
 
     def discard_settings(self) -> None:
@@ -102,15 +102,15 @@ class Manifest:
 def changes_of(
     meshes: Sequence[Mesh], record_of: Mapping[str, Record], most: int, progress: TextIO | None
 ) -> Iterator[tuple[Mesh, Change]]:
-    """Meshes whose files differ from those of their records, for instance because a file could not be read then, or
-    cannot now."""
+    """Meshes whose files differ from those of their records, for instance because a file could not be read then, or cannot be
+    read now."""
     for mesh, now in zip(meshes, fingerprints([path for _, path in meshes], most, progress), strict=True):
         record = record_of[mesh[0]]
         before = (record.get("source_bytes"), record.get("source_sha256"))
         if now == UNREADABLE:
             if before != UNREADABLE:
                 yield mesh, "unreadable"
-        elif now != before or _extension(record.get("source", "")) != _extension(mesh[1]):  # which tells how to read it
+        elif now != before or _extension(record.get("source", "")) != _extension(mesh[1]):  # the extension determines the format
             yield mesh, "changed"
 
 
@@ -165,7 +165,7 @@ def _parts(count: int) -> str:
 
 
 def difference(manifest: pathlib.Path, settings: Record) -> str | None:
-    """Says which setting of a manifest differs."""
+    """A sentence that names a setting in which a manifest differs; None if there is none."""
     theirs: Record = next(records_of(manifest), {})
     if "echinus" not in theirs:
         return f"{manifest}: there are no settings in its first line; remove the file to label all meshes again"

@@ -7,7 +7,7 @@ from collections.abc import Iterable, Iterator
 from typing import Self, TextIO, TypeVar
 
 Item = TypeVar("Item")
-TERMINAL_SECONDS, LOG_SECONDS = 0.1, 10  # between lines
+TERMINAL_SECONDS, LOG_SECONDS = 0.1, 10  # between updates
 
 
 def counted(meshes: int) -> str:

@@ -18,20 +18,20 @@ class Random:
         self._bits = np.random.Philox(key=words)
 
     def uniform(self, *shape: int) -> Doubles:
-        """In [0, 1), multiples of 2^-53."""
+        """Evenly distributed multiples of 2^-53 in [0, 1)."""
         raw = np.asarray(self._bits.random_raw(int(np.prod(shape))), np.uint64)
         raw >>= np.uint64(11)
         return raw.reshape(shape) * 2.0**-53
 
     def normal(self, *shape: int) -> Doubles:
-        """Normally distributed, of mean 0 and variance 1."""
+        """Normally distributed numbers with mean 0 and variance 1."""
         return normal_quantile(self.uniform(*shape) + 2.0**-54)
 
 
 def normal_quantile(p: Doubles) -> Doubles:
-    """The inverse of the normal distribution function, to 1.2e-9 of its value, for 0 < p < 1.
+    """The inverse of the normal distribution function, with a relative error of at most 1.2e-9, for 0 < p < 1.
 
-    Acklam's rational approximations (2003): one for the middle, one for the tails, which one in twenty needs.
+    Acklam's rational approximations (2003): one for the middle and one for the tails, which one number in twenty needs.
     """
     middle = p - 0.5
     r = middle * middle
@@ -54,7 +54,7 @@ def _polynomial(x: Doubles, coefficients: tuple[float, ...]) -> Doubles:
 
 
 def _log(x: Doubles) -> Doubles:
-    """The logarithm by the series of atanh: those of C libraries differ in the last bit."""
+    """The logarithm, by the series of atanh, since the logarithms of C libraries differ in the last bit."""
     mantissa, exponent = np.frexp(x)
     low = mantissa < 0.7071067811865476
     mantissa, exponent = np.where(low, 2 * mantissa, mantissa), exponent - low

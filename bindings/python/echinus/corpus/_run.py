@@ -27,7 +27,7 @@ class Summary:
     Attributes
     ----------
     labelled, refused, points
-        The numbers of this run.
+        The numbers of meshes labelled and refused, and of points, in this run.
     again
         Number of refused meshes that the next run tries again: memory or time did not suffice, or other files of a glTF may
         have been missing.
@@ -117,7 +117,7 @@ def _label(corpus: Corpus, unfinished: str, run: _engines.Engine, progress: Text
         manifest.keep(finished, left)
         summary, began = Summary(already=sum(len(task.meshes) for task in finished)), time.monotonic()
         bar = Bar(progress, sum(len(task.meshes) for task in left))
-        with bar, contextlib.closing(_all_records(left, run)) as results:  # which ends the workers
+        with bar, contextlib.closing(_all_records(left, run)) as results:  # closing it ends the workers
             for records in results:
                 manifest.add(records)
                 summary.count(records)
@@ -131,7 +131,7 @@ def _label(corpus: Corpus, unfinished: str, run: _engines.Engine, progress: Text
 
 
 def _all_records(tasks: Sequence[Task], run: _engines.Engine) -> Generator[list[Record], None, None]:
-    """Yields the records of all tasks. A mesh that crashes every worker is found, and refused like any other."""
+    """Yields the records of all tasks. A mesh that crashes every worker is identified and refused."""
     deadly: list[tuple[Task, str]] = []
     for task, result in run(tasks) if tasks else ():
         if isinstance(result, str):

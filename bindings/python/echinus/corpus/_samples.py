@@ -19,7 +19,7 @@ from echinus.corpus._random import Random
 
 Frame = Literal["cube", "sphere", "none"]
 Stored = Literal["float16", "float32"]
-_LARGEST = 1e30  # of lengths: their squares are far from overflow, and float32 has room for them
+_LARGEST = 1e30  # the largest length: its square is far from overflow, and float32 can represent it
 
 
 class Refused(Exception):
@@ -28,7 +28,7 @@ class Refused(Exception):
     Attributes
     ----------
     again : bool
-        Whether another attempt may succeed, because the reason lies in the machine, not in the mesh.
+        Whether another attempt may succeed, because the cause is the machine, not the mesh.
     """
 
     def __init__(self, reason: str, *, again: bool = False) -> None:
@@ -43,18 +43,19 @@ class Sampling:
     Attributes
     ----------
     uniform
-        Number of points in the box of the frame, which is enlarged by half the padding on each side: [-0.5, 0.5]^3 for
-        ``"cube"``, and the bounding box for ``"none"``. For ``"sphere"`` it is [-1, 1]^3, without padding.
+        Number of points in the box of the frame: [-0.5, 0.5]^3 for ``"cube"`` and the bounding box for ``"none"``, enlarged on
+        each side by half the padding. For ``"sphere"`` the box is [-1, 1]^3, without padding.
     near
-        Number of points of the surface that are moved by normally distributed offsets, in equal numbers for each sigma.
+        Number of points near the surface: points of the surface that are moved by normally distributed offsets, with equal
+        numbers for each sigma.
     sigmas
         Standard deviations of an offset along each axis, in the frame.
     surface
-        Number of points of the surface, evenly distributed by area, with the normals of their faces.
+        Number of points on the surface, evenly distributed by area, with the normals of their faces.
     frame
-        point_in_frame = (point - loc) / scale. ``"cube"``: the bounding box is centred and its longest edge is 1.
-        ``"sphere"``: it is centred and the farthest vertex has the distance 1 / 1.03, as in DeepSDF. ``"none"``: the frame of
-        the mesh.
+        point_in_frame = (point - loc) / scale. ``"cube"``: the bounding box is centred and its longest edge is 1. ``"sphere"``:
+        the bounding box is centred and the farthest vertex has the distance 1 / 1.03 from 0, as in DeepSDF. ``"none"``: the frame
+        of the mesh.
     padding
         Padding of the box of uniform points, as a share of its edge; the sum of both sides.
     dtype
@@ -162,7 +163,7 @@ def sample(mesh: MeshLike, sampling: Sampling = Sampling()) -> Samples:
     Raises
     ------
     Refused
-        The mesh is too large, takes too long, has no extent, or too few of its labels are certain.
+        The mesh is too large, takes too long or has no extent, or too few of its labels are certain.
     Error
         ``invalid_mesh``.
     """
@@ -264,7 +265,7 @@ def _used_vertices(mesh: Mesh) -> NDArray[np.float64]:
 
 def _longest_edge(mesh: Mesh) -> float:
     """The longest edge of the bounding box."""
-    inspect(mesh)  # refuses what has none
+    inspect(mesh)  # raises an error if there is none
     used = _used_vertices(mesh)
     return float((used.max(axis=0) - used.min(axis=0)).max())
 
@@ -296,7 +297,7 @@ def _uniform_points(mesh: Mesh, sampling: Sampling, random: Random) -> NDArray[n
 
 
 class _Surface:
-    """Draws points of a mesh, evenly by area."""
+    """Draws points of the surface of a mesh, evenly by area."""
 
     def __init__(self, mesh: Mesh) -> None:
         a, b, c = (mesh.vertices[mesh.faces[:, k]].astype(np.float64) for k in range(3))
@@ -352,8 +353,8 @@ class _Labels:
 
 
 def _labels(mesh: Mesh, points: NDArray[np.floating[Any]], closed: bool, sampling: Sampling) -> _Labels:
-    """Computes labels in calls of a few seconds, so that the time limit takes effect. The first call is small, since soups are a
-    thousand times as slow."""
+    """Computes labels in calls of a few seconds, so that the time limit takes effect. The first call is small, since queries of
+    soups of triangles are a thousand times as slow."""
     end = time.monotonic() + sampling.time_limit
     try:
         exact = ExactMap(mesh, threads=1)
@@ -373,7 +374,8 @@ def _labels(mesh: Mesh, points: NDArray[np.floating[Any]], closed: bool, samplin
 
 
 def _fill(labels: _Labels, part: slice, exact: ExactMap, points: NDArray[np.floating[Any]], closed: bool, distances: bool) -> None:
-    """Inside or outside of a closed mesh takes a tenth of the time of contacts, and all answers are certain."""
+    """Computes some of the labels. For a closed mesh, inside or outside takes a tenth of the time of contacts, and all answers
+    are certain."""
     if closed and not distances:
         exact.contains(points[part], out=labels.occupancy[part])
         return

@@ -18,11 +18,11 @@ EXTENSIONS = (".obj", ".ply", ".stl", ".off", ".gltf", ".glb", ".3ds")
 Mesh = tuple[str, str]  # name, path
 Fingerprint = tuple["int | None", "str | None"]  # bytes and SHA-256
 UNREADABLE: Fingerprint = (None, None)
-SLICE = 10_000  # files whose fingerprints are under way at once
+SLICE = 10_000  # the number of files whose fingerprints are requested at once
 
 
 def find_meshes(sources: Path | Sequence[Path]) -> list[Mesh]:
-    """Name and path of each mesh file, by name.
+    """The name and path of each mesh file, sorted by name.
 
     Parameters
     ----------
@@ -95,7 +95,7 @@ def _text_of(source: pathlib.Path) -> str:
 
 
 def lies_below(name: Any) -> bool:
-    """Is it the plain name of a file in a folder, or in one below it?"""
+    """Is this the plain path of a file in a folder or in one of its subfolders?"""
     if not isinstance(name, str) or "\0" in name:
         return False
     path = pathlib.PurePath(name)

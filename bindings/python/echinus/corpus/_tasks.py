@@ -47,7 +47,7 @@ class Task:
     refused: tuple[tuple[str, str], ...] = ()
 
     def alone(self) -> list[Task]:
-        """One task for each mesh, which leaves no files, to find the mesh that crashes workers."""
+        """One task for each mesh, to find the mesh that crashes workers. Their files go to a folder that is removed."""
         return [replace(self, meshes=(mesh,), archive=None, output=self.place_alone) for mesh in self.meshes]
 
     @property
@@ -95,7 +95,7 @@ def _refusal(error: Refused | Error | MemoryError, path: str) -> Record:
 
 def _labelled(name: str, path: str, size: int | None, task: Task) -> tuple[dict[str, bytes], Record]:
     if os.path.exists(path) and not os.path.isfile(path):
-        raise Refused(f"{path}: it is not a file")  # a pipe would be waited for without end
+        raise Refused(f"{path}: it is not a file")  # a pipe could block the worker forever
     if size is not None and size > task.max_bytes:
         raise Refused(f"{path}: the file has {size} bytes; at most {task.max_bytes} are accepted")
     samples = sample(read_mesh(path), task.sampling)
@@ -110,8 +110,8 @@ def _write(task: Task, name: str, content: bytes) -> Record:
 
 @contextlib.contextmanager
 def whole_file(target: pathlib.Path, unfinished: str) -> Iterator[BinaryIO]:
-    """A file that is in the folder ``unfinished``, under another name, until it is complete. Errors of the system name
-    it."""
+    """A file that is in the folder ``unfinished``, under another name, until it is complete. Errors of the system name the
+    target."""
     with naming(target):
         target.parent.mkdir(parents=True, exist_ok=True)
         part = os.path.join(unfinished, secrets.token_hex(8))

@@ -60,7 +60,7 @@ def verify(corpus: Corpus) -> list[str]:
 def examine(corpus: Corpus, progress: TextIO | None = None) -> Findings:
     folder, settings = pathlib.Path(of_kind("corpus", corpus, Corpus).output), corpus.settings()
     if folder.exists():
-        os.listdir(folder)  # raises where it cannot be read
+        os.listdir(folder)  # raises an error if it cannot be read
     found = [path for path, _ in manifests(folder)]
     records = list(itertools.chain.from_iterable(map(records_of, found)))
     complaints = [sentence for path in found if (sentence := difference(path, settings))]
