@@ -23,14 +23,14 @@ ECHINUS_EXPORT_BEGIN
 /// Maps placed in the world. Points, normals, depths and margins in this header are in world units and axes.
 namespace echinus {
 
-/// The map of a collider: a distance map, an exact map or a custom map. Each of them, and AnyMap, converts to
-/// it.
+/// The map of a collider: a distance map, an exact map or a custom map. A map of each of these kinds, and
+/// AnyMap, converts to a ColliderMap.
 struct ColliderMap {
     using Kind = std::variant<DistanceMap, ExactMap, std::shared_ptr<const CustomMap>>;
     Kind kind;
     /// If `kind` is not an exact map: the exact map of the same mesh, whose faces CollisionMode::Surfaces
     /// needs. Particles are then pushed out by `kind`, and surfaces are kept off these faces. Queries ignore
-    /// it.
+    /// this map.
     std::optional<ExactMap> surface{};
 
     template <std::convertible_to<Kind> Map>
@@ -44,7 +44,7 @@ struct ColliderMap {
 /// point_world = pose.to_world(scale * (origin + point_local)), component by component. The origin is that
 /// of the map (ExactMapView::origin); it is usually 0, and simulations accept only 0.
 struct Collider {
-    ColliderMap map;       ///< not a null pointer
+    ColliderMap map;       ///< its map; a pointer to a custom map is not null
     RigidTransform pose{}; ///< its rotation has unit length
     /// Scale factors along the map's axes. Three equal factors change the size, different factors stretch the
     /// model, and negative factors mirror it. The inside stays inside, and normals point out of the solid in
@@ -121,7 +121,8 @@ Contact contact(const Collider& collider, Vec3f point_world, float margin_world 
 
 /// @param points_world  [n]
 /// @param inside        [n] out: 1 inside, 0 outside. Must not overlap points_world.
-/// @param thread_count  0: all cores. Used for 32 768 points or more, also to query a custom map
+/// @param thread_count  the number of threads for 32 768 points or more; 0: all cores. These threads then
+/// also query a custom map concurrently
 /// @pre points_world.size() == inside.size()
 void contains_batch(const Collider& collider, StridedSpan<const Vec3f> points_world,
                     std::span<std::uint8_t> inside, unsigned thread_count = 1) noexcept;
@@ -148,10 +149,10 @@ struct ContactArrays {
     std::span<std::uint32_t> colliders{}; ///< the index of the contact's collider
 };
 
-/// Finds the contacts that contacts_batch() finds for one collider after the other, bit for bit, without the
-/// points that have none. It suits solvers that keep separate arrays, have many points and few contacts, or
-/// many colliders. Contacts ascend by collider, then by point. A collider whose bounding sphere is away from
-/// all points costs next to nothing.
+/// Finds the contacts that contacts_batch() finds for one collider after the other, bit for bit, and leaves
+/// out the points that have no contact. It suits solvers that keep separate arrays, have many points and few
+/// contacts, or many colliders. Contacts ascend by collider, then by point. A collider whose bounding sphere
+/// is away from all points costs next to nothing.
 ///
 /// With points in double, the world may be arbitrarily large: points are rounded to float only in the
 /// collider's local frame, and `points` of the contacts are the map's answers transformed to the world in
@@ -182,7 +183,7 @@ SweepHit sweep(const Collider& collider, const RigidTransform& previous_pose, Ve
 /// sweep() for many particles.
 /// @param from_world, to_world  [n]
 /// @param hits                  [n] out. Must not overlap the points
-/// @param thread_count          0: all cores. Used for 32 768 particles or more
+/// @param thread_count          the number of threads for 32 768 particles or more; 0: all cores
 /// @pre all three arrays have the same size
 void sweep_batch(const Collider& collider, const RigidTransform& previous_pose,
                  StridedSpan<const Vec3f> from_world, StridedSpan<const Vec3f> to_world,

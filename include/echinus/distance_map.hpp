@@ -62,7 +62,7 @@ struct DistanceMapOptions {
     /// Spherical and ellipsoidal: samples crowd at the poles, so put the poles where the detail is.
     PoleAxis pole_axis = PoleAxis::Z;
     CentreChoice centre =
-        CentreChoice::BoundingSphere; ///< the paper's; with Search a build takes five times as long
+        CentreChoice::BoundingSphere; ///< the start of the rays; with Search a build takes five times as long
     unsigned thread_count = 0;        ///< 0: all cores. The bytes of the map do not depend on it.
 };
 
@@ -80,15 +80,15 @@ struct DistanceMapStatistics {
 };
 
 /// A map as plain arrays, wherever they are stored: in a DistanceMap, in a mapped file, or in JavaScript's
-/// memory. All queries take it. It owns nothing and is cheap to copy. validate() in src/distance_map checks
-/// its invariants, for untrusted bytes and for built maps: entry_offsets ascends from 0 to the number of
-/// entries; the entries of a direction ascend within [0, largest_entry()].
+/// memory. All queries take a view. It owns nothing and is cheap to copy. validate() in src/distance_map
+/// checks its invariants, for untrusted bytes and for built maps: entry_offsets ascends from 0 to the number
+/// of entries; the entries of a direction ascend within [0, largest_entry()].
 struct DistanceMapView {
     Vec3f centre;     ///< C, local
     float radius = 0; ///< R: every vertex of the mesh lies within R of C
     DirectionGrid grid = DirectionGrid::Spherical;
     std::uint32_t longitude_count = 0;  ///< spherical and ellipsoidal; 0 in other maps
-    std::uint32_t colatitude_count = 0; ///< the same
+    std::uint32_t colatitude_count = 0; ///< spherical and ellipsoidal; 0 in other maps
     std::uint32_t divisions = 0;        ///< octahedral and cube; 0 in other maps
     PoleAxis pole_axis = PoleAxis::Z;   ///< spherical and ellipsoidal
     /// Ellipsoidal: the factors of x, y and z that are applied before a direction's longitude and colatitude
@@ -106,7 +106,7 @@ struct DistanceMapView {
     /// around C. Ellipsoidal: distances from C in the scaled frame.
     std::span<const float> entries_float32;
     std::span<const std::uint16_t>
-        entries_unorm16; ///< [entry_count] the same * 65535 / largest_entry(), or empty
+        entries_unorm16; ///< [entry_count] or empty: these entries times 65535 / largest_entry(), rounded
     Vec3d origin{};      ///< TriangleMesh::origin: the origin of the local frame. Queries ignore it
 
     std::size_t direction_count() const;
@@ -131,7 +131,7 @@ class DistanceMap {
     /// seen from outside. A solid so flat or thin that no ray meets it gives a map without entries, for which
     /// every point is outside
     /// @throws Error InvalidMesh as inspect() does, or when the bounding radius lies outside [1e-15, 1e15];
-    /// InvalidOptions when a count that the grid uses lies outside the bounds above
+    /// InvalidOptions when a count that the grid uses lies outside the bounds in DistanceMapOptions
     static DistanceMap build(const TriangleMesh& mesh, const DistanceMapOptions& options = {});
 
     /// Makes a map from existing arrays. They belong to `storage`, which the map keeps alive. The file reader
@@ -185,7 +185,8 @@ Contact contact(const DistanceMapView& map, Vec3f point_local, float margin = 0)
 /// is several times as fast as single queries.
 /// @param points_local  [n]
 /// @param inside        [n] out: 1 inside, 0 outside. Must not overlap points_local.
-/// @param thread_count  0: all cores. Used for 32 768 points or more; the answers do not depend on it
+/// @param thread_count  number of threads for 32 768 points or more; 0: all cores. The answers do not depend
+/// on it
 /// @pre points_local.size() == inside.size()
 void contains_batch(const DistanceMapView& map, StridedSpan<const Vec3f> points_local,
                     std::span<std::uint8_t> inside, unsigned thread_count = 1) noexcept;
@@ -211,7 +212,7 @@ int usable_sample_count(const DistanceMapView& map, Vec3f point_local) noexcept;
 /// directions give a triangle.
 struct MapSurface {
     TriangleMesh mesh;                ///< local frame; faces point out of the solid
-    std::vector<std::uint32_t> layer; ///< [face_count] 0 for the layer nearest to the centre
+    std::vector<std::uint32_t> layer; ///< [face_count] the face's layer; 0 for the one nearest to the centre
 };
 MapSurface reconstruct_surface(const DistanceMapView& map);
 

@@ -47,7 +47,7 @@ struct ExactMapOptions {
     /// For an open surface: search for gaps between bands in which the winding number stays certain, so that
     /// queries there need not compute it. The search takes up to about 0.2 s of one core. Without the search,
     /// answers are the same but take up to eight times as long, which is acceptable for a map that is used
-    /// for one frame only. It has no effect on a closed mesh.
+    /// for one frame only. The option has no effect on a closed mesh.
     bool find_certain_gaps = true;
     unsigned thread_count = 0; ///< 0: all cores. The bytes of the map do not depend on it.
 };
@@ -147,7 +147,8 @@ Containment classify(const ExactMapView& map, Vec3f point_local) noexcept;
 /// classify() for many points.
 /// @param points_local  [n]
 /// @param answers       [n] out. Must not overlap points_local
-/// @param thread_count  0: all cores. Used for 32 768 points or more; the answers do not depend on it
+/// @param thread_count  number of threads for 32 768 points or more; 0: all cores. The answers do not depend
+/// on it
 /// @pre points_local.size() == answers.size()
 void classify_batch(const ExactMapView& map, StridedSpan<const Vec3f> points_local,
                     std::span<Containment> answers, unsigned thread_count = 1) noexcept;
@@ -169,7 +170,8 @@ float winding_number(const ExactMapView& map, Vec3f point_local, float tolerance
 /// winding_number() for many points.
 /// @param points_local  [n]
 /// @param windings      [n] out. Must not overlap points_local
-/// @param thread_count  0: all cores. Used for 32 768 points or more; the answers do not depend on it
+/// @param thread_count  number of threads for 32 768 points or more; 0: all cores. The answers do not depend
+/// on it
 /// @pre points_local.size() == windings.size()
 void winding_number_batch(const ExactMapView& map, StridedSpan<const Vec3f> points_local,
                           std::span<float> windings, float tolerance = 1e-2F,
@@ -198,7 +200,8 @@ Contact contact(const ExactMapView& map, Vec3f point_local, float margin = 0) no
 /// from its first call on; if this memory cannot be allocated, the points are processed one by one.
 /// @param points_local  [n]
 /// @param inside        [n] out: 1 inside, 0 outside. Must not overlap points_local
-/// @param thread_count  0: all cores. Used for 32 768 points or more; the answers do not depend on it
+/// @param thread_count  number of threads for 32 768 points or more; 0: all cores. The answers do not depend
+/// on it
 /// @pre points_local.size() == inside.size()
 void contains_batch(const ExactMapView& map, StridedSpan<const Vec3f> points_local,
                     std::span<std::uint8_t> inside, unsigned thread_count = 1) noexcept;
@@ -240,7 +243,8 @@ float signed_distance(const ExactMapView& map, Vec3f point_local, Vec3f* gradien
 /// @param points_local  [n]
 /// @param distances     [n] out. Must not overlap points_local
 /// @param gradients     [n] out, or empty if not needed. Must not overlap points_local
-/// @param thread_count  0: all cores. Used for 32 768 points or more; the answers do not depend on it
+/// @param thread_count  number of threads for 32 768 points or more; 0: all cores. The answers do not depend
+/// on it
 /// @pre points_local.size() == distances.size()
 void signed_distance_batch(const ExactMapView& map, StridedSpan<const Vec3f> points_local,
                            std::span<float> distances, std::span<Vec3f> gradients = {},
@@ -278,7 +282,7 @@ SweepHit sweep(const ExactMapView& map, Vec3f from_local, Vec3f to_local) noexce
 /// sweep() for many segments.
 /// @param from_local, to_local  [n]
 /// @param hits                  [n] out. Must not overlap the points
-/// @param thread_count          0: all cores. Used for 32 768 segments or more
+/// @param thread_count          the number of threads for 32 768 segments or more; 0: all cores
 /// @pre all three arrays have the same size
 void sweep_batch(const ExactMapView& map, StridedSpan<const Vec3f> from_local,
                  StridedSpan<const Vec3f> to_local, std::span<SweepHit> hits,

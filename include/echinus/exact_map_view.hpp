@@ -93,7 +93,7 @@ struct ExactMapView {
     /// [band_count] The winding number of the gap between a band and the one below it, or kUncertain or
     /// kSplit. Beyond a cell's last band it is 0 and not stored.
     std::span<const std::int16_t> winding_below;
-    IndexArray references; ///< [reference_count] faces
+    IndexArray references; ///< [reference_count] the faces of the bands
     /// [reference_count] The parts of its cell that a face touches, one bit for each of the 16 parts
     /// (src/directions/octahedral_cells.hpp). A query tests only the faces of its own part.
     std::span<const std::uint16_t> reference_parts;
@@ -102,10 +102,10 @@ struct ExactMapView {
     std::span<const Vec3<std::int32_t>> vertices;
     IndexArray corners;                 ///< [3 face_count] vertices of each face
     IndexArray face_numbers;            ///< [face_count] each face's index in the mesh
-    std::span<const TreeNode> nodes;    ///< the first is the root
-    std::span<const BorderEdge> border; ///< empty for a closed surface
-    /// For an open surface; null for a closed one. Map files do not store it, since it follows from the other
-    /// arrays.
+    std::span<const TreeNode> nodes;    ///< the tree over the faces; its root is the first node
+    std::span<const BorderEdge> border; ///< the border edges; empty for a closed surface
+    /// The tree for the winding number of an open surface; null for a closed one. Map files do not store the
+    /// tree, since it follows from the other arrays.
     const WindingTree* winding_tree = nullptr;
     Vec3d origin{}; ///< TriangleMesh::origin: the origin of the local frame. Queries ignore it
 

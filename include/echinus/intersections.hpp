@@ -16,8 +16,8 @@
 ECHINUS_EXPORT_BEGIN
 
 /// Exact tests for intersecting faces, for instance to verify the results of a simulation, or to check a
-/// garment and its body before one. The tests are exact for the given float coordinates, without rounding or
-/// tolerances. The answers are the same on every machine.
+/// garment and its body before a simulation. The tests are exact for the given float coordinates, without
+/// rounding or tolerances. The answers are the same on every machine.
 namespace echinus {
 
 /// Do two closed triangles have a common point? Touching counts. Corners may coincide or be collinear; the
@@ -32,9 +32,9 @@ struct FacePair {
     friend auto operator<=>(const FacePair&, const FacePair&) = default;
 };
 
-// The following two functions find candidates with trees of boxes over the faces, in O(n log n + pairs of
-// overlapping boxes). A face { v, w, w } is an edge without area, such as a thread segment, and counts as
-// that segment.
+// The following two functions find candidates with trees of boxes over the faces, in O(n log n + m) time for
+// n faces and m pairs of overlapping boxes. A face { v, w, w } is an edge without area, such as a thread
+// segment, and counts as that segment.
 
 /// The intersecting pairs of a face of `a` and a face of `b`, in ascending order, for meshes in the same
 /// frame.
@@ -60,9 +60,10 @@ struct IntersectionCurve {
     bool closed = false; ///< a segment joins the last point to the first
 };
 
-/// Where surfaces intersect, as pairs of faces and as geometry.
+/// The intersections of surfaces, as pairs of faces and as curves.
 struct Intersections {
-    /// Limits the memory for surfaces that lie on each other, in which each face intersects a dozen others.
+    /// The largest number of pairs. It limits the memory for surfaces that lie on each other, in which each
+    /// face intersects a dozen others.
     static constexpr std::size_t kMostPairs = std::size_t{1} << 25;
 
     std::vector<FacePair> pairs;
@@ -74,7 +75,8 @@ struct Intersections {
     double length = 0; ///< the total length of all curves
 };
 
-/// The pairs of intersecting_pairs() and their curves, in O(n log n + pairs log pairs).
+/// The pairs of intersecting_pairs() and their curves. The curves of p pairs take O(p log p) time in
+/// addition.
 /// @throws Error as intersecting_pairs() does; InvalidMesh for more than kMostPairs pairs
 Intersections intersections(const TriangleMesh& a, const TriangleMesh& b);
 
@@ -91,8 +93,8 @@ struct Penetration {
     /// Whether the depth was measured: the other mesh must be closed, so that it has an inside, and an exact
     /// map of it must be possible. Otherwise the other members keep their defaults.
     bool known = false;
-    std::uint32_t vertex_count = 0; ///< the vertices that are inside; those that no face uses do not count
-    std::uint32_t deepest_vertex = kNoIndex; ///< the first of equally deep ones
+    std::uint32_t vertex_count = 0; ///< number of vertices inside, not counting those that no face uses
+    std::uint32_t deepest_vertex = kNoIndex; ///< the first of the deepest vertices
     float depth = 0;                         ///< the depth of the deepest vertex
 };
 
@@ -109,7 +111,7 @@ struct CheckOptions {
     /// The names of the meshes in errors, for instance those of their files. If there are none, the meshes
     /// are called "mesh 0" and so on.
     std::vector<std::string> names = {};
-    unsigned thread_count = 0; ///< for the depths; 0: all cores. The results do not depend on it
+    unsigned thread_count = 0; ///< for measuring depths; 0: all cores. The results do not depend on it
     /// Called with the completed share of the work, 0 to 1, in the thread that called check().
     std::function<void(double share)> progress = nullptr;
 };
@@ -117,11 +119,11 @@ struct CheckOptions {
 /// Checks every mesh and every pair of meshes, which must all lie in one frame. Intersections of faces are
 /// decided exactly; containment and depth are as accurate as the queries of an exact map (exact_map.hpp),
 /// which is built from each closed mesh. A mesh may lie inside another without intersecting it.
-/// @returns the pairs that intersect, or of which one mesh has a vertex inside the other, and the meshes that
-/// intersect themselves, in ascending order
+/// @returns the pairs of meshes that intersect or of which one has a vertex inside the other, and the meshes
+/// that intersect themselves, in ascending order
 /// @throws Error InvalidMesh as intersections() and self_intersections() do; the message begins with the
 /// names of the meshes
-/// @throws Error InvalidOptions if there are names, but not as many as meshes
+/// @throws Error InvalidOptions if the number of names is neither 0 nor that of the meshes
 std::vector<CheckedMeshes> check(std::span<const TriangleMesh> meshes, const CheckOptions& options = {});
 
 } // namespace echinus

@@ -31,7 +31,7 @@ struct MapFileNotes {
 /// Writes a map file. It is written under a temporary name in the target's folder and then renamed: a failure
 /// leaves no partial file and keeps the old one, and programs that have mapped the old file keep it. The same
 /// map and notes give the same bytes.
-/// @throws Error Unwritable; also when the map exceeds the 2 GiB limit of a map file
+/// @throws Error Unwritable if the file cannot be written, or the map exceeds the 2 GiB limit of a map file
 void save(const AnyMap& map, const std::filesystem::path& path, const MapFileNotes& notes = {});
 
 /// The bytes that save() writes.
@@ -45,10 +45,10 @@ std::vector<std::byte> serialise(const AnyMap& map, const MapFileNotes& notes = 
 /// with the path
 AnyMap load_map(const std::filesystem::path& path);
 
-/// Loads a map from bytes in memory, which must stay unchanged as long as `storage` exists; the map keeps it
-/// alive.
+/// Loads a map from bytes in memory, which must stay unchanged as long as `storage` exists; the map keeps
+/// `storage` alive.
 /// @pre bytes.data() is aligned to 8 bytes
-/// @throws Error as above; the message begins with `name`
+/// @throws Error WrongFormat, UnsupportedVersion or Damaged; the message begins with `name`
 AnyMap load_map(std::span<const std::byte> bytes, std::shared_ptr<const void> storage,
                 const std::string& name);
 

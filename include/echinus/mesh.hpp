@@ -39,13 +39,13 @@ struct Fault {
     static constexpr std::size_t kFirstFaceCount = 8;
 
     std::size_t count = 0;
-    std::vector<std::uint32_t> first_faces; ///< at most kFirstFaceCount, ascending, each once
+    std::vector<std::uint32_t> first_faces; ///< their indices: at most kFirstFaceCount, ascending, each once
 };
 
 /// The properties of a mesh. An *edge* is an unordered pair of vertices; a face with two equal corners has
 /// none. Vertices are distinguished by index, except on seams: vertices of unbalanced edges count as one
 /// if they are at most 2^-21 R apart (R is the radius of the bounding sphere), a quarter of a lattice
-/// step. All maps do the same, so their queries agree with `closed`.
+/// step. All maps treat vertices in the same way, so their queries agree with `closed`.
 struct MeshReport {
     std::size_t face_count = 0;
     std::size_t vertex_count = 0;
@@ -59,7 +59,7 @@ struct MeshReport {
     Fault duplicate_faces;    ///< faces with the same three vertices, in any order, as an earlier face
     Fault degenerate_faces;   ///< faces with two equal corners or with area zero
     double signed_volume = 0; ///< positive if faces point outwards; of limited meaning if the mesh is open
-    Sphere bounding_sphere;   ///< the smallest that encloses all vertices used by faces
+    Sphere bounding_sphere;   ///< the smallest sphere that encloses all vertices used by faces
     /// The spacing of floats at the largest coordinate, in the file's frame, if all coordinates are floats
     /// and half of this spacing exceeds a step of a map's lattice, R / 2^19; otherwise 0. If the coordinates
     /// have been rounded to float, the shape is wrong by up to half the spacing, and so are points given as
@@ -67,7 +67,7 @@ struct MeshReport {
     double rounding_step = 0;
 };
 
-/// Examines a mesh in O(n log n).
+/// Examines a mesh of n faces in O(n log n) time.
 /// @throws Error InvalidMesh when there is no face, an index is out of range, or a used vertex is not
 /// finite; the message names the first such face.
 MeshReport inspect(const TriangleMesh& mesh);
@@ -186,15 +186,16 @@ struct RepairedMesh {
 /// may become unused. Vertices are distinguished by index: call weld() first, or close seams, if vertices at
 /// equal positions are meant to be one. The same mesh and options give the same bytes on every machine.
 ///
-/// The time is O(n log n). flip_inside_out adds O(components^2) comparisons of boxes and, where boxes contain
-/// each other, winding numbers; max_hole_edges adds O(border edges * max_hole_edges^2), at most 0.2 ms per
-/// border edge; drop_inner_faces adds one to three exact maps and up to ten queries per face, on one core.
+/// The time is O(n log n) for n faces. flip_inside_out adds O(components^2) comparisons of boxes and, where
+/// boxes contain each other, winding numbers; max_hole_edges adds O(border edges * max_hole_edges^2), at most
+/// 0.2 ms per border edge; drop_inner_faces adds one to three exact maps and up to ten queries per face, on
+/// one core.
 /// @throws Error InvalidMesh as inspect() does, or if a thickened sheet exceeds the range of float; with
 /// drop_inner_faces as ExactMap::build() does; InvalidOptions for values outside the stated ranges
 RepairedMesh repair(const TriangleMesh& mesh, const RepairOptions& options);
 
-/// Joins vertices at equal positions (0 and -0 are equal), then drops unused vertices, in O(n log n). Faces
-/// and the remaining vertices keep their order. A NaN equals only a NaN with the same bits.
+/// Joins vertices at equal positions (0 and -0 are equal), then drops unused vertices, in O(n log n) time for
+/// n vertices. Faces and the remaining vertices keep their order. A NaN equals only a NaN with the same bits.
 /// @throws Error InvalidMesh when an index is out of range
 TriangleMesh weld(const TriangleMesh& mesh);
 

@@ -38,7 +38,7 @@ struct SolverStep {
 };
 
 /// Keeps the particles of any solver out of models. After each step of the solver, correct() moves particles
-/// that entered or crossed a model back out; everything else remains the solver's.
+/// that entered or crossed a model back out; the solver does everything else.
 ///
 ///     ParticleCollision collision({{.map = map}}, 0.01);
 ///     for (;;) {
@@ -107,8 +107,8 @@ class ParticleCollision {
     /// solver has moved the particle, its collision starts afresh. If the number of particles changes,
     /// collision starts afresh for all.
     ///
-    /// The cost is O(n) for each collider whose bounding sphere particles may touch: about 20 ns for a
-    /// particle away from surfaces, and less than 1 us for a particle that moves along them
+    /// The cost is O(n) for n particles and each collider whose bounding sphere they may touch: about 20 ns
+    /// for a particle away from surfaces, and less than 1 us for a particle that moves along them
     /// (docs/own_solver.md). The function allocates only in the first step, when the number of particles
     /// changes, after place_collider(), and in a thread's first batches (docs/conventions.md).
     /// @param seconds  the duration of the step; positive

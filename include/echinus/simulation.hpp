@@ -59,20 +59,20 @@ struct CollisionFilter {
 
 /// Particles that are held, moved along a path, and finally released.
 struct Handle {
-    std::vector<std::uint32_t> particles; ///< not pinned, each in at most one handle
+    std::vector<std::uint32_t> particles; ///< none is pinned, and each is in at most one handle
     /// The path of the handle: poses over the time since the simulation began, interpolated as in pose_at().
     /// The particles move rigidly with the handle from their positions at 0 s. Without keys the handle does
     /// not move.
     std::vector<PoseKey> keys{};
-    /// The time in seconds at which the handle releases its particles: in the first frame that begins then or
-    /// later. They keep their velocity. If the time is infinite, they are not released.
+    /// The time in seconds after which the handle releases its particles: the first frame that begins then or
+    /// later releases them. They keep their velocity. If the time is infinite, they are not released.
     double release_time = std::numeric_limits<double>::infinity();
 };
 
 /// Particles, their constraints and materials, all in world units and axes.
 struct Deformable {
     std::vector<Vec3f> positions; ///< [particle_count]
-    /// [particle_count] Units per second. If empty, all particles are at rest, and a simulation stores that
+    /// [particle_count] Units per second. If empty, all particles are at rest, and a simulation stores zeros
     /// here.
     std::vector<Vec3f> velocities{};
     /// [particle_count] 1 / mass; 0 for a pinned particle, which stays in place or moves with its attachment.
@@ -80,20 +80,20 @@ struct Deformable {
     /// afterwards. With Jakobsen masses may have any unit, since only their ratios matter. Newton takes the
     /// masses of soft bodies from here, in kg, and those of cloth from its ClothMaterial.
     std::vector<float> inverse_masses;
-    /// The distance constraints, in the order in which Jakobsen relaxes them. Newton uses only structural
-    /// constraints that are not edges of faces: threads.
+    /// The distance constraints, in the order in which Jakobsen relaxes them. Newton uses only the structural
+    /// constraints of threads, which run along no edge of a face.
     std::vector<DistanceConstraint> constraints;
     std::vector<Triangle> faces;           ///< for Newton's cloth, rendering, wind and surface collision
     std::vector<Attachment> attachments{}; ///< attachments of pinned particles, at most one for each
     /// The elements of soft bodies. A particle of an element that belongs to no face is an interior particle
     /// and does not collide.
     std::vector<ElasticTetrahedron> tetrahedra{};
-    std::vector<CollisionFilter> filters{}; ///< in any order
+    std::vector<CollisionFilter> filters{}; ///< the pairs that do not collide, in any order
     /// [particle_count] The rest shape, in any pose. If empty, it is the initial shape, which a simulation
     /// stores here. Newton computes the strain and the bending angles of cloth from it; distance constraints
     /// have their own rest lengths.
     std::vector<Vec3f> rest_positions{};
-    std::vector<Handle> handles{}; ///< Newton only
+    std::vector<Handle> handles{}; ///< held particles; only Newton supports handles
 
     std::size_t particle_count() const { return positions.size(); }
 };
@@ -105,7 +105,7 @@ Deformable passing_through(std::uint32_t collider, Deformable deformable);
 /// [particle_count] 1 for each particle that passes through a collider because of the deformable's filters;
 /// empty if there is none. Filters of particles that the deformable does not have are ignored.
 std::vector<std::uint8_t> let_through(const Deformable& deformable, std::size_t collider);
-/// Does a face pass through the collider, that is, does one of its particles? @param passes  as returned by
+/// Does a face pass through the collider? It does if any of its particles does. @param passes as returned by
 /// let_through()
 inline bool passes_through(const Triangle& face, std::span<const std::uint8_t> passes) {
     return !passes.empty() && (passes[face[0]] | passes[face[1]] | passes[face[2]]) != 0;
@@ -124,9 +124,9 @@ struct ClothOptions {
     std::vector<std::uint32_t> pins{}; ///< particles that do not move: row * column_count + column
 };
 
-/// Makes a sheet with structural, shear and bending constraints; a sheet of 100 x 100 particles has 59 002 of
-/// them. Particle (row, column) has the index row * column_count + column; the front of every face points
-/// along the sheet's local z. Constraints are ordered row by row.
+/// Makes a sheet with structural, shear and bending constraints; a sheet of 100 x 100 particles has 59 002
+/// constraints. Particle (row, column) has the index row * column_count + column; the front of every face
+/// points along the sheet's local z. Constraints are ordered row by row.
 /// @throws Error InvalidOptions
 Deformable make_cloth(const ClothOptions& options);
 
@@ -137,23 +137,23 @@ struct MeshClothOptions {
     /// [vertex_count] The rest shape of the cloth, if it differs from the initial mesh; it is scaled as well.
     /// If empty, the mesh is at rest.
     std::vector<Vec3f> rest_vertices{};
-    /// Edges without faces: threads and needles. If exactly two of them meet at a vertex, a bending
-    /// constraint across it keeps them straight.
+    /// Edges without faces: threads and needles. If exactly two threads meet at a vertex, a bending
+    /// constraint across the vertex keeps them straight.
     std::vector<std::array<std::uint32_t, 2>> threads{};
     std::vector<std::uint32_t> pins{};     ///< vertices that do not move
     std::vector<Attachment> attachments{}; ///< vertices that move with a collider
 };
 
 /// Makes a cloth of any shape: a garment, a sheet with holes, a closed bag, or several pieces at once, in O(n
-/// log n). Its particles are the mesh's vertices and its faces those of the mesh. A face that traverses a
-/// common edge in the same direction as an earlier face is flipped. On a one-sided surface faces cannot agree
-/// everywhere, which affects only rendering.
+/// log n) time for n vertices, faces and threads. Its particles are the mesh's vertices and its faces those
+/// of the mesh. A face that traverses a common edge in the same direction as an earlier face is flipped. On a
+/// one-sided surface faces cannot agree everywhere; this affects only rendering.
 ///
 /// Each edge and each thread gets a structural constraint. Two triangles that form a quadrilateral with
 /// nearly right angles (within 20 degrees) get shear constraints along both diagonals instead of one along
-/// their common edge, like the squares of a sheet. Each other edge between two faces gets a bending
+/// their common edge, like the squares of a sheet. Every other edge between two faces gets a bending
 /// constraint between the opposite corners. Newton computes bending from the faces, and uses only the
-/// constraints of threads.
+/// structural constraints of threads.
 ///
 /// Masses are proportional to the areas around the particles in the rest shape, with a mean of 1, as in a
 /// sheet; a thread weighs as much as a strip of cloth whose width is the mean edge length. Newton takes the
@@ -165,8 +165,8 @@ struct MeshClothOptions {
 Deformable make_cloth(const TriangleMesh& mesh, const MeshClothOptions& options);
 
 /// The condition of rest: for `frame_count` frames in a row every particle has stayed within `distance` of
-/// one position and has been no faster than `speed`. Neither suffices alone: a trembling particle stays near
-/// one position, and cloth at the end of a swing is slow for a moment.
+/// one position and has been no faster than `speed`. Neither condition suffices alone: a trembling particle
+/// stays near one position, and cloth at the end of a swing is slow for a moment.
 ///
 /// With SolverKind::Jakobsen, a much lower speed may not be reached: gravity alone adds 0.04 units per second
 /// in one frame of 1/240 s, and a particle that contacts and constraints push slightly back and forth keeps
@@ -197,12 +197,12 @@ enum class CollisionMode : std::uint8_t {
     Particles,
     /// Edges and faces collide with colliders, too: no face of the deformable intersects a collider, within
     /// the limits of docs/limits.md (docs/surfaces.md explains the method). This needs an exact map of the
-    /// collider, as its map or as ColliderMap::surface; with a collider that has none only particles collide.
-    /// The exact map of an open mesh does not need allow_open_colliders, and keeps each particle on its side
-    /// of the surface. In the initial state nothing may intersect and no particle may be inside a closed
-    /// model (but see NewtonOptions::untangle).
+    /// collider, as its map or as ColliderMap::surface; with a collider that has no exact map only particles
+    /// collide. The exact map of an open mesh does not need allow_open_colliders, and keeps each particle on
+    /// its side of the surface. In the initial state no face may intersect a collider, and no particle may be
+    /// inside a closed model (but see NewtonOptions::untangle).
     Surfaces,
-    /// The faces of the deformable do not intersect each other either.
+    /// In addition, faces of the deformable do not intersect each other; in the initial state they must not.
     SurfacesAndSelf,
 };
 
@@ -212,11 +212,12 @@ enum class CollisionMode : std::uint8_t {
 struct NewtonOptions {
     ClothMaterial material{};
     /// The largest number of steps of Newton's method in each frame or substep; twice as many are allowed
-    /// while there is no contact. Fewer are taken if it converges. With a limit below two, contacts remain
-    /// unresolved.
+    /// while there is no contact. Fewer are taken if the method converges. With a limit below two, contacts
+    /// remain unresolved.
     std::uint32_t step_count = 4;
-    /// Tolerance of Newton's method, relative to the mean edge length. It has converged if the decrease of
-    /// the energy corresponds to a root-mean-square displacement of at most this length.
+    /// Tolerance of Newton's method, relative to the mean edge length. The method has converged when the
+    /// decrease of the energy corresponds to a root-mean-square displacement of at most the tolerance times
+    /// that length.
     double tolerance = 5e-4;
     /// Resistance of still air, 1/s: the rate at which the velocity of a free particle decays, whatever the
     /// time step. 0 is a vacuum.
@@ -225,9 +226,9 @@ struct NewtonOptions {
     /// as if a pump maintained it, and pushes each face outwards. Not negative.
     double pressure = 0;
     CollisionMode collision = CollisionMode::SurfacesAndSelf;
-    /// Distance in units that layers of the deformable keep from each other; by default the thickness. It is
-    /// less near small faces: at most 0.4 of the smallest height of a face, and at most a quarter of the mean
-    /// edge length, so that neighbours have room.
+    /// Distance in units that layers of the deformable keep from each other; by default the thickness. The
+    /// distance is less near small faces: at most 0.4 of the smallest height of a face, and at most a quarter
+    /// of the mean edge length, so that neighbours have room.
     std::optional<double> self_thickness{};
     /// Separate an initial state that intersects a model or itself, or lies inside a closed model, before the
     /// first frame instead of rejecting it, by moving particles that are not pinned. An initial state that
@@ -263,13 +264,13 @@ enum class SolverKind : std::uint8_t { Newton, Jakobsen };
 
 struct SimulationOptions {
     std::variant<NewtonOptions, JakobsenOptions> solver{};
-    double time_step = 1.0 / 60; ///< seconds per frame. Jakobsen needs a quarter of that or less
+    double time_step = 1.0 / 60; ///< seconds per frame. Jakobsen needs a quarter of the default or less
     Vec3d gravity{0, 0, -9.81};  ///< units per second squared
     /// Distance in units that the deformable keeps from colliders. By default it is half the mean rest length
     /// of the structural constraints or, for soft bodies, half the mean edge length (docs/thickness.md).
     /// Newton: at least a fiftieth of the mean edge length. Jakobsen: 0 is possible but slow, since particles
-    /// on the surface itself need a query in every relaxation, and then one face in twenty intersects the
-    /// model.
+    /// on the surface itself need a query in every relaxation; with this value one face in twenty intersects
+    /// the model.
     std::optional<double> thickness{};
     /// Coulomb's coefficient of friction; 0 is no friction. Jakobsen: the tangential motion relative to the
     /// collider is reduced by the coefficient times the length of the push-out, but at most to 0.
@@ -315,8 +316,8 @@ struct SolverChoice {
     NewtonOptions newton{};
     JakobsenOptions jakobsen{};
 
-    /// Takes the options that are set, and the defaults of the other solver; with Jakobsen its collision mode
-    /// is CollisionMode::Particles.
+    /// Takes the options that are set, and the defaults of the other solver; if Jakobsen is set,
+    /// newton.collision becomes CollisionMode::Particles.
     explicit SolverChoice(const SimulationOptions& options);
     /// The options of the chosen solver.
     std::variant<NewtonOptions, JakobsenOptions> chosen() const;
@@ -334,13 +335,14 @@ struct Load {
 /// A contact that exerted a force in the last frame, between a particle, edge or face of the deformable and a
 /// collider, or between two elements of the deformable.
 struct ContactPoint {
-    Vec3d position;        ///< on the deformable, when the contact last exerted a force; world coordinates
-    Vec3d normal;          ///< unit, towards the deformable or, in self-collision, its first element
-    double gap;            ///< the distance when the contact last exerted a force; positive
-    double normal_impulse; ///< impulse of the frame along the normal, on the deformable or its first element,
-                           ///< N s
-    Vec3d friction_impulse; ///< impulse of the frame perpendicular to the normal, N s
-    std::uint32_t collider; ///< kNoIndex if the deformable is in contact with itself
+    Vec3d position; ///< on the deformable, when the contact last exerted a force; world coordinates
+    Vec3d normal; ///< unit; points towards the deformable or, in self-collision, towards the first of the two
+                  ///< elements in contact
+    double gap;   ///< the distance when the contact last exerted a force; positive
+    double normal_impulse;  ///< impulse of the frame along the normal, on the deformable or, in
+                            ///< self-collision, on the first of the two elements, N s
+    Vec3d friction_impulse; ///< impulse of the frame perpendicular to the normal, on the same element, N s
+    std::uint32_t collider; ///< its index; kNoIndex if the deformable is in contact with itself
     /// The particles of the deformable's element, followed in self-collision by those of the second element:
     /// a vertex and the three corners of a face, or the two ends of each edge. Unused entries are kNoIndex.
     std::array<std::uint32_t, 4> particles;
@@ -353,7 +355,7 @@ struct SimulationProfile {
     double collision_seconds = 0;   ///< contact and the motion of colliders
     std::uint64_t query_count = 0;  ///< Jakobsen: particle queries, counted per iteration and collider
     std::uint64_t contact_count =
-        0; ///< Newton: active contacts, summed over steps; Jakobsen: queries that pushed
+        0; ///< Newton: active contacts, summed over steps; Jakobsen: queries that pushed a particle
     /// Jakobsen: queries that needed the map; with an exact map, the query for a particle that has hardly
     /// moved is answered from cached data.
     std::uint64_t map_query_count = 0;
@@ -371,9 +373,9 @@ struct SimulationProfile {
     /// If surfaces collide: number of vertex-face and edge-edge pairs whose distance was measured.
     std::uint64_t measured_pair_count = 0;
     /// If surfaces collide: number of unresolved vertex-face and edge-edge pairs, for which no free space was
-    /// proven at the start of a substep because colliders left no room, summed over all substeps. While it is
-    /// 0, no faces intersect at the end of a frame, except because of rounding at hundreds of a collider's
-    /// radii from the origin, which is not counted (docs/limits.md).
+    /// proven at the start of a substep because colliders left no room, summed over all substeps. While this
+    /// number is 0, no faces intersect at the end of a frame. Intersections because of rounding, hundreds of
+    /// a collider's radii from the origin, are not counted (docs/limits.md).
     std::uint64_t unresolved_count = 0;
 };
 
@@ -409,9 +411,9 @@ class Simulation {
     /// deformable do not fit together, a constraint or a face refers to a particle that does not exist, a
     /// number is not finite, or a collider has a scale of 0, a rotation that does not have unit length, a
     /// null pointer for a map, or, if only particles collide, the exact map of an open mesh without
-    /// options.allow_open_colliders. If surfaces collide, it is also thrown when the deformable initially
-    /// intersects a collider or, with CollisionMode::SurfacesAndSelf, itself, or is inside a collider, and
-    /// untangle is not set or could not separate them: the message names the first pairs
+    /// options.allow_open_colliders. InvalidOptions is also thrown if surfaces collide and the deformable
+    /// initially intersects a collider or, with CollisionMode::SurfacesAndSelf, itself, or is inside a
+    /// collider, unless untangle is set and can separate them; the message names the first pairs
     Simulation(Deformable deformable, std::vector<Collider> colliders, const SimulationOptions& options);
     ~Simulation();
     Simulation(const Simulation& other);
@@ -475,10 +477,10 @@ class Simulation {
     /// XXH64 hash of the bits of all positions and velocities.
     std::uint64_t state_hash() const;
 
-    // Motion of colliders. The last call of one of these four functions applies. All have the precondition
-    // collider_index < colliders().size().
+    // Motion of colliders. For each collider, the last call of one of the following four functions applies.
+    // All have the precondition collider_index < colliders().size().
 
-    /// Sets the velocities of a collider, which it keeps.
+    /// Sets the velocities of a collider, which it keeps until they are set again.
     void set_collider_velocity(std::size_t collider_index, const Vec3d& linear, const Vec3d& angular);
 
     /// Makes the collider move to this pose during the next frame, at constant velocity and rotating along
@@ -489,8 +491,8 @@ class Simulation {
     void set_collider_pose(std::size_t collider_index, const RigidTransform& pose);
 
     /// Makes the collider follow keyframes: each frame moves it to the pose that pose_at() returns for the
-    /// end of the frame, options().time_step * (frame() + 1) seconds after the simulation began; frame() is
-    /// the number before the frame. The collider starts from its present pose, so place it at the present
+    /// end of the frame, options().time_step * (frame() + 1) seconds after the simulation began, with frame()
+    /// as it is before the frame. The collider starts from its present pose, so place it at the present
     /// pose_at() first. The simulation is not at rest before the last key. Without keys the collider does not
     /// move.
     /// @throws Error InvalidOptions, naming the key, when a time or a pose is not finite, a rotation does
@@ -503,7 +505,7 @@ class Simulation {
     /// frame instead.
     /// @param mass  kg, 1e-9 to 1e15
     /// @throws Error InvalidOptions when the mass is out of range, the solver is Jakobsen, or the collider
-    /// has no exact map, or that of an open mesh
+    /// has no exact map of a closed mesh
     void set_collider_free(std::size_t collider_index, double mass);
 
     /// Newton: moves colliders, the deformable or both without traversing the space in between: at once if
@@ -518,11 +520,11 @@ class Simulation {
     /// changed, and the teleport is dropped
     void teleport(const Teleport& teleport);
 
-    // Deforming colliders: their vertices move, and their faces stay the same. Preconditions are
-    // collider_index < colliders().size(), a collider with an exact map, and collision of surfaces. Surfaces
-    // are kept off the moving faces as off any other faces (docs/surfaces.md), and attached particles follow
-    // the face that was nearest to them when the collider first deformed. Each frame that deforms a collider
-    // rebuilds its exact map on one thread, and may allocate.
+    // Deforming colliders: their vertices move, and their faces stay the same. The precondition is
+    // collider_index < colliders().size(). The collider needs an exact map, and surfaces must collide.
+    // Surfaces are kept off the moving faces as off any other faces (docs/surfaces.md), and attached
+    // particles follow the face that was nearest to them when the collider first deformed. Each frame that
+    // deforms a collider rebuilds its exact map on one thread, and may allocate.
 
     /// Makes the vertices of a collider's mesh move to these positions along straight lines during the next
     /// frame, and then stop. The pose is independent and may move at the same time. The map is built in this
@@ -549,12 +551,12 @@ class Simulation {
     Load load_on(std::size_t collider_index) const;
 
     /// Newton: sets whether the following frames record the contacts that exert a force. Recording is off by
-    /// default; it costs nothing then. The setting is not part of a saved state.
+    /// default, and costs nothing while it is off. The setting is not part of a saved state.
     void record_contacts(bool is_on);
     /// The contacts that were recorded in the last frame, in unspecified order; valid until the next frame.
-    /// Their impulses divided by the time step sum to the opposite of load_on() of each collider, except for
-    /// the loads of attached particles and of particles that a collider stopped before contact could
-    /// (SimulationProfile::truncated_count). Empty under Jakobsen.
+    /// For each collider, the impulses of its contacts divided by the time step sum to the opposite of
+    /// load_on(), except for the loads of attached particles and of particles that the collider stopped
+    /// before contact acted (SimulationProfile::truncated_count). Empty under Jakobsen.
     std::span<const ContactPoint> contact_points() const;
 
     /// Sets the velocity of a particle, in units per second. The next frame treats it like any other

@@ -28,17 +28,17 @@ struct SoftBodyOptions {
     std::vector<Attachment> attachments{}; ///< vertices that move with a collider
 };
 
-/// Makes a soft body at rest, in O(n log n). Its particles are the mesh's vertices and its faces the mesh's
-/// boundary(), in their order. The mass of a vertex is a quarter of the total mass of the tetrahedra around
-/// it. A body needs NewtonOptions.
+/// Makes a soft body at rest, in O(n log n) time for n tetrahedra. Its particles are the mesh's vertices, and
+/// its faces are those of the mesh's boundary(), in the same order. The mass of a vertex is a quarter of the
+/// total mass of the tetrahedra around it. Only NewtonOptions can move a body.
 /// @throws Error InvalidMesh, naming the tetrahedron or vertex, as require_valid_tetrahedra(), and if a
 /// vertex belongs to no tetrahedron; InvalidOptions for options out of range, and for vertices that the mesh
 /// does not have
 Deformable make_soft_body(const TetrahedralMesh& mesh, const SoftBodyOptions& options);
 
-/// Combines several deformables into one, such as a cloth and an organ, in O(n). With
-/// CollisionMode::SurfacesAndSelf, they collide with each other. The particles of the parts follow each other
-/// in order, and everything that refers to particles is renumbered.
+/// Combines several deformables into one, such as a cloth and an organ, in time proportional to their total
+/// size. With CollisionMode::SurfacesAndSelf, they collide with each other. The particles of the parts follow
+/// each other in order, and everything that refers to particles is renumbered.
 /// @throws Error InvalidOptions for a part that no simulation would accept; the message names the part and
 /// its fault
 Deformable combine(std::span<const Deformable> parts);

@@ -20,8 +20,8 @@ namespace echinus {
 struct SurfaceCollisionOptions {
     double friction = 0.5;      ///< Coulomb's coefficient; 0 is no friction
     bool self_collision = true; ///< keep faces from intersecting each other, too
-    /// Distance in units that layers keep from each other; by default the thickness. It is less near small
-    /// faces.
+    /// Distance in units that layers keep from each other; by default the thickness. The distance is less
+    /// near small faces.
     std::optional<double> self_thickness{};
     /// If possible, separate an initial state that intersects a model or itself, or lies inside a closed
     /// model, instead of rejecting it.
@@ -34,11 +34,11 @@ struct SurfaceCollisionOptions {
 /// as far as the paths are proven to be free of collisions (docs/surfaces.md). Contact and friction work as
 /// with NewtonOptions, for a surface without stiffness.
 ///
-/// After correct() no face intersects a model or, with self_collision, another face. The exceptions, which
-/// unresolved_count() counts, are those of CollisionMode::Surfaces. Only particles collide with
-/// a collider that has no exact map. Contact forces begin at a distance equal to the thickness and grow as a
-/// face comes closer, so the distance may be small after a hard impact. Copies are independent. Different
-/// threads may use different objects at the same time, but only one thread may use an object at a time.
+/// After correct() no face intersects a model or, with self_collision, another face. The exceptions are those
+/// of CollisionMode::Surfaces; unresolved_count() counts most of them. Only particles collide with a collider
+/// that has no exact map. Contact forces begin at a distance equal to the thickness and grow as a face comes
+/// closer, so the distance may be small after a hard impact. Copies are independent. Different threads may
+/// use different objects at the same time, but only one thread may use an object at a time.
 class SurfaceCollision {
   public:
     /// @param positions  [n] the initial positions, at which no faces may intersect (but see untangle)

@@ -14,8 +14,8 @@
 ECHINUS_EXPORT_BEGIN
 
 /// Queries of triangles against the surface of an exact map: the nearby faces, the distance to the nearest
-/// one, intersection tests, and sweeps. They do not depend on an inside, so open meshes work as well as
-/// closed ones.
+/// one, intersection tests, and sweeps. They do not need an inside, so open meshes work as well as closed
+/// ones.
 ///
 /// The surface is that of the map: the faces of the mesh with their vertices snapped to the map's lattice,
 /// which moves them by at most R / 2^20 along each axis, without faces that have no area there. Everything is
@@ -38,9 +38,9 @@ bool intersects(const ExactMapView& map, const TrianglePoints& triangle_local) n
 
 /// The distance of a triangle from the surface.
 struct Clearance {
-    /// A lower bound of the distance between triangle and surface, in spite of rounding. It usually falls
-    /// short by rounding errors only: by 1e-6 of the sum of the distance and the coordinates' extent. It is 0
-    /// if they intersect.
+    /// A lower bound on the distance between the triangle and the surface, which holds despite rounding. It
+    /// usually falls short of the distance by rounding errors only: by 1e-6 of the sum of the distance and
+    /// the coordinates' extent. It is 0 if the triangle and the surface intersect.
     float distance = std::numeric_limits<float>::infinity();
     std::uint32_t face = kNoIndex; ///< the face at this distance; kNoIndex if none is within `farthest`
 
@@ -75,10 +75,10 @@ struct TriangleSweepHit {
 ///
 /// The cost is up to 16 clearances. A triangle that has not arrived by then, because it slides along the
 /// surface or leaves it slowly, is advanced separately for each face within its box, until the first face is
-/// met. This takes a few computations of the distance of two triangles per face, and at most 36 + 2 log2(L /
-/// R) if all corners move alike; L is the length of the path. The path of a triangle that turns closely
-/// around an edge is divided; this may take about ten thousand distance computations, and more if its corners
-/// are far away.
+/// met. For each face this takes a few computations of the distance of two triangles, and at most 36 + 2
+/// log2(L / R) for a path of length L on which all corners move alike. The path of a triangle that turns
+/// closely around an edge is divided; this may take about ten thousand distance computations, and more if its
+/// corners are far away.
 TriangleSweepHit sweep(const ExactMapView& map, const TrianglePoints& from_local,
                        const TrianglePoints& to_local) noexcept;
 

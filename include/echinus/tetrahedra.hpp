@@ -35,7 +35,7 @@ struct TetrahedralMesh {
 TetrahedralMesh local_body(std::span<const Vec3d> positions, std::vector<Tetrahedron> tetrahedra);
 
 /// Checks that each tetrahedron is positive, and that two tetrahedra with a common face lie on opposite sides
-/// of it. Unused vertices may have any values. Signs are exact. The time is O(n log n).
+/// of it. Unused vertices may have any values. Signs are exact. The time is O(n log n) for n tetrahedra.
 /// @throws Error InvalidMesh when there is no tetrahedron, an index is out of range, a used vertex is not
 /// finite, a tetrahedron is flat or negative, or two lie on the same side of a common face; the message
 /// names the first fault
@@ -44,7 +44,7 @@ void require_valid_tetrahedra(const TetrahedralMesh& mesh);
 /// The faces that belong to only one tetrahedron, outward, in the order of the tetrahedra. The vertices are
 /// those of the body with the same indices, including interior ones, which no face uses. The boundary is
 /// closed, and manifold unless tetrahedra of the body meet in only an edge or a vertex. The time is O(n log
-/// n).
+/// n) for n tetrahedra.
 /// @throws Error InvalidMesh when an index is out of range, or two tetrahedra lie on the same side of a face
 TriangleMesh boundary(const TetrahedralMesh& mesh);
 
@@ -58,8 +58,8 @@ TetrahedralMesh make_solid_box(const Vec3d& size, const std::array<std::uint32_t
 // ---- From a closed surface to tetrahedra ----
 
 struct TetrahedralizeOptions {
-    /// The edge length of the lattice's cubes in the model's unit, which is the length of the longest
-    /// interior edges; at the boundary some edges are 1.5 times as long. Parts thinner than this are lost or
+    /// The edge length of the lattice's cubes in the model's unit. The longest interior edges have this
+    /// length; at the boundary some edges are 1.5 times as long. Parts thinner than this length are lost or
     /// torn. Either this or `count` is positive, and the other is 0.
     double size = 0;
     /// The target number of tetrahedra. The size is found by trial, so that the number is met to within 5 %
@@ -98,8 +98,8 @@ struct Tetrahedralization {
 /// parts are thicker than a size (docs/tetrahedra.md): compare TetrahedralReport::volume.
 ///
 /// For an open model the generalised winding number decides what is inside (exact_map.hpp). The vertices are
-/// numbered along the model's longest axis. A million tetrahedra take about 1.5 s on one core, also with a
-/// count, including all trials.
+/// numbered along the model's longest axis. A million tetrahedra take about 1.5 s on one core; with a count,
+/// this includes all trials.
 /// @throws Error InvalidOptions when not exactly one of size and count is positive, a size is not finite,
 /// is smaller than 1/4096 of the model's largest coordinate, where float is too coarse, or would take more
 /// tetrahedra or lattice vertices than allowed; InvalidMesh when no tetrahedron of that size fits into the
@@ -115,10 +115,10 @@ struct TetrahedralReport {
     double least_volume = 0;      ///< the volume of the smallest tetrahedron
     double shortest_edge = 0, longest_edge = 0;
     double least_angle_deg = 0, greatest_angle_deg = 0; ///< angles between two faces of a tetrahedron
-    MeshReport boundary;                                ///< inspect() of boundary()
+    MeshReport boundary;                                ///< the report of inspect() on boundary()
 };
 
-/// Examines a body in O(n log n).
+/// Examines a body of n tetrahedra in O(n log n) time.
 /// @throws Error InvalidMesh as require_valid_tetrahedra() does
 TetrahedralReport inspect_tetrahedra(const TetrahedralMesh& mesh);
 
@@ -138,18 +138,18 @@ BoundaryDistance measure_distance(const TetrahedralMesh& mesh, const ExactMapVie
 
 // ---- Embedding of a finer mesh ----
 
-/// The position of a point in a body, as weights of a tetrahedron's corners, whose sum is 1. Outside the
-/// tetrahedron some weights are negative.
+/// The position of a point relative to a body, in barycentric coordinates: weights of the corners of one
+/// tetrahedron, which sum to 1. Outside the tetrahedron some weights are negative.
 struct EmbeddedPoint {
     std::uint32_t tetrahedron = 0;
-    Tetrahedron vertices{}; ///< its corners
+    Tetrahedron vertices{}; ///< the tetrahedron's corners
     std::array<float, 4> weights{};
 };
 using Embedding = std::vector<EmbeddedPoint>;
 
 /// Finds for each point the tetrahedron that contains it, or else the nearest one, and the point's weights
-/// there. If there are several, the one with the smallest index is chosen. The time is O(log n) per point in
-/// a body of well-shaped tetrahedra.
+/// there. If several tetrahedra are equally near, the one with the smallest index is chosen. Each point takes
+/// O(log t) time in a body of t well-shaped tetrahedra.
 /// @param points  [n] finite
 /// @returns [n]
 /// @throws Error InvalidMesh as require_valid_tetrahedra() does, or when a point is not finite

@@ -28,7 +28,7 @@ namespace echinus::render {
 struct Colour {
     float red = 0, green = 0, blue = 0;
 
-    /// From 0xRRGGBB.
+    /// The colour 0xRRGGBB.
     static constexpr Colour from_hex(std::uint32_t rgb) {
         return {static_cast<float>(rgb >> 16 & 0xFF) / 255, static_cast<float>(rgb >> 8 & 0xFF) / 255,
                 static_cast<float>(rgb & 0xFF) / 255};
@@ -52,7 +52,7 @@ inline constexpr Colour kLayers[] = {
     Colour::from_hex(0x88CCEE), Colour::from_hex(0xAA4499), Colour::from_hex(0x999933),
     Colour::from_hex(0x332288), Colour::from_hex(0x117733), Colour::from_hex(0x882255),
 };
-/// A scale from low to high values, also in greyscale: five of Paul Tol's "YlOrBr".
+/// A colour scale from low to high values, which also works in greyscale: five of Paul Tol's "YlOrBr".
 inline constexpr Colour kScale[] = {
     Colour::from_hex(0xFFF7BC), Colour::from_hex(0xFEC44F), Colour::from_hex(0xFB9A29),
     Colour::from_hex(0xCC4C02), Colour::from_hex(0x662506),
@@ -64,8 +64,8 @@ struct RenderedObject {
     TriangleMesh mesh; ///< world frame, any unit
     Colour colour = palette::kClay;
     std::vector<Colour> face_colours;        ///< [face_count] in place of `colour`, or empty
-    std::optional<Colour> back_colour;       ///< of the clockwise side of faces; by default that of the front
-    std::vector<std::uint32_t> marked_faces; ///< drawn in palette::kMark on both sides
+    std::optional<Colour> back_colour;       ///< the clockwise side of faces; by default the front's colour
+    std::vector<std::uint32_t> marked_faces; ///< faces drawn in palette::kMark on both sides
     /// Edges look smooth if the angle between their faces is smaller than this, and sharp otherwise. With 0
     /// every face looks flat.
     double crease_angle_deg = 40;
@@ -79,7 +79,7 @@ struct View {
     /// Direction towards the camera, counter-clockwise about `up`. 0 is +x for up = z and, cyclically, +z for
     /// up = y and +y for up = x.
     double azimuth_deg = 35;
-    double elevation_deg = 20;      ///< height above the horizon, in [-89, 89]
+    double elevation_deg = 20;      ///< angle above the horizon, in [-89, 89]
     double vertical_field_deg = 24; ///< in [1, 120]; smaller is more like a parallel projection
     double margin = 0.07;           ///< empty border, as a share of the picture's height, in [0, 0.35]
     double footer = 0;              ///< extra room below for a caption: a share of the height, in [0, 0.25]
@@ -102,7 +102,7 @@ struct Camera {
 Camera camera_for(std::span<const Vec3f> points, const View& view, double aspect);
 
 /// The camera for all vertices that faces of the objects use.
-/// @throws Error as above, and InvalidMesh as inspect() does
+/// @throws Error as the function for points does, and InvalidMesh as inspect() does
 Camera camera_for(std::span<const RenderedObject> objects, const View& view, double aspect);
 
 // ---- Pictures ----
@@ -119,7 +119,7 @@ struct RenderOptions {
     static constexpr std::uint32_t kMaxSampleCount = 4096;
 
     std::uint32_t width = 1000; ///< pixels, 1 to kMaxSide; width * height at most kMaxPixelCount
-    std::uint32_t height = 750; ///< pixels, the same
+    std::uint32_t height = 750; ///< pixels, within the same limits
     std::uint32_t samples =
         32; ///< rays per pixel, 1 to kMaxSampleCount. The time is proportional to it, and the noise is
             ///< inversely proportional to its square root. Powers of two are distributed best.

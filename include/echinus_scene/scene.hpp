@@ -20,9 +20,10 @@
 
 ECHINUS_EXPORT_BEGIN
 
-/// Scenes: the set-up of a simulation as JSON (docs/scenes.md documents every key). They belong to the
-/// library echinus::scene, which needs nlohmann-json. It reads no meshes: the caller reads models, with
-/// echinus::io or otherwise, and passes their maps, and likewise the mesh of a cloth.
+/// Scenes: the set-up of a simulation as JSON (docs/scenes.md documents every key). The declarations belong
+/// to the library echinus::scene, which needs nlohmann-json. The library reads no meshes: the caller reads
+/// the models and the mesh of a cloth, with echinus::io or otherwise, and passes the models' maps and that
+/// mesh.
 namespace echinus {
 
 struct ModelFile {
@@ -55,10 +56,10 @@ using VertexChoice = std::variant<std::vector<std::uint32_t>, VertexBox>;
 /// Vertices, or particles of a sheet, that move with a collider.
 struct SceneAttachment {
     VertexChoice vertices;
-    std::uint32_t collider = 0; ///< its index
+    std::uint32_t collider = 0; ///< index in Scene::colliders
 };
 
-/// Vertices, or particles of a sheet, that are moved along a path and released: a Handle.
+/// The arguments of a Handle: vertices, or particles of a sheet, that are moved along a path and released.
 struct SceneHandle {
     VertexChoice vertices;
     std::vector<PoseKey> keyframes; ///< if empty, the handle does not move
@@ -74,7 +75,7 @@ struct SceneVelocity {
 /// A cloth of any shape: the arguments of make_cloth() for a mesh, by name.
 struct MeshCloth {
     SceneModel mesh;                     ///< the initial shape
-    std::optional<SceneModel> rest_mesh; ///< with the same faces; by default the cloth starts at rest
+    std::optional<SceneModel> rest_mesh; ///< the rest shape, with the same faces; by default `mesh`
     RigidTransform pose;
     double scale = 1;
     VertexChoice pins;
@@ -93,8 +94,8 @@ struct SceneBody {
     std::vector<std::uint32_t> ignores; ///< indices of the colliders that the body passes through
 };
 
-/// The meshes of a scene's cloth and bodies that come from files, as read by the caller; all others are left
-/// empty.
+/// The meshes of a scene's cloth and bodies that come from files, as read by the caller. The meshes of
+/// generated shapes stay empty.
 struct ClothMeshes {
     TriangleMesh mesh, rest_mesh;
     std::vector<std::array<std::uint32_t, 2>> threads{}; ///< the threads of `mesh`: see read_mesh_and_edges()
@@ -111,14 +112,14 @@ struct CacheFile {
 /// A model in the world, and its motion.
 struct SceneCollider {
     SceneModel model;
-    RepairOptions repair; ///< for the mesh, before the map is built
+    RepairOptions repair; ///< repairs of the mesh before the map is built
     RigidTransform pose;  ///< the initial pose
-    Vec3d scale{1, 1, 1}; ///< along the axes of the mesh
+    Vec3d scale{1, 1, 1}; ///< factors along the axes of the mesh
     Vec3d linear_velocity;
     Vec3d angular_velocity;         ///< radians per second
-    std::vector<PoseKey> keyframes; ///< if not empty, used in place of velocities
-    std::optional<CacheFile> cache; ///< for a deforming model
-    std::optional<double> mass;     ///< kg, for a model that moves freely from its velocities
+    std::vector<PoseKey> keyframes; ///< the motion, if not empty, in place of velocities
+    std::optional<CacheFile> cache; ///< the moving vertices of a deforming model
+    std::optional<double> mass;     ///< kg; with a mass the model moves freely from its velocities
 };
 
 /// The complete initial state of a simulation. In a scene that was read, every number is in its range; the
@@ -128,9 +129,9 @@ struct Scene {
     MapOptions map;                       ///< the options of every collider's map
     bool has_cloth = true;
     ClothOptions cloth;
-    std::optional<MeshCloth> mesh_cloth;            ///< in place of `cloth`
-    std::vector<SceneAttachment> cloth_attachments; ///< in a sheet: row * column_count + column
-    std::vector<SceneHandle> cloth_handles;         ///< likewise
+    std::optional<MeshCloth> mesh_cloth;            ///< if set, the cloth's shape in place of `cloth`
+    std::vector<SceneAttachment> cloth_attachments; ///< a sheet's particles: row * column_count + column
+    std::vector<SceneHandle> cloth_handles;         ///< particles as in cloth_attachments
     SceneVelocity cloth_velocity;
     std::vector<std::uint32_t> cloth_ignores; ///< indices of the colliders that the cloth passes through
     std::vector<SceneBody> bodies;            ///< soft bodies, after the cloth
@@ -143,15 +144,16 @@ struct Scene {
 };
 
 /// Reads a scene.
-/// @throws Error Unreadable, or InvalidScene with a message that begins with the path and names the key:
-/// unknown (then with the most similar known key), missing, given twice, of the wrong type or out of range
+/// @throws Error Unreadable; InvalidScene if the text is not JSON, or a key is unknown, missing, given twice,
+/// of the wrong type or out of range. The message begins with the path and names the key; for an unknown key
+/// it also names the most similar known one
 Scene read_scene(const std::filesystem::path& path);
 
 /// Reads a scene from text; `name` replaces the path in error messages.
 Scene parse_scene(std::string_view json, const std::string& name);
 
-/// Reads only the object under a scene's `map`; {} gives the defaults.
-/// @throws Error InvalidScene as above
+/// Reads map options from the JSON object that a scene has under `map`; {} gives the defaults.
+/// @throws Error InvalidScene as read_scene() does
 MapOptions parse_map_options(std::string_view json, const std::string& name);
 
 /// The path of a model's file, or of a cache's file or folder, in the first of the folders that contains it.
@@ -166,8 +168,8 @@ TriangleMesh make_mesh(const TorusModel& model);
 TriangleMesh make_mesh(const SphereModel& model);
 TriangleMesh make_mesh(const BoxModel& model);
 
-/// Builds a map of the options' kind.
-/// @param thread_count  0: all cores; replaces the one in the options
+/// Builds a map of the kind that the options determine.
+/// @param thread_count  replaces the number in the options; 0: all cores
 /// @throws Error as the map's build() does
 AnyMap build_map(const TriangleMesh& mesh, const MapOptions& options, unsigned thread_count = 0);
 
@@ -185,13 +187,13 @@ TetrahedralMesh fill_body(const SceneBody& body, const TriangleMesh& surface);
 
 /// Makes the scene's cloth in its initial pose, at rest.
 /// @param meshes  the meshes of a cloth from files
-/// @throws Error as the two functions make_cloth() do; for a mesh the message begins with its name.
-/// InvalidOptions if a mesh from a file is missing, or a box contains no vertex; InvalidMesh if the faces of
-/// the rest mesh differ
+/// @throws Error as make_cloth() does for a sheet or a mesh; for a mesh the message begins with the mesh's
+/// name. InvalidOptions if a mesh from a file is missing, or a box contains no vertex; InvalidMesh if the
+/// faces of the rest mesh differ from those of the initial mesh
 Deformable make_cloth(const Scene& scene, const ClothMeshes& meshes = {});
 
-/// Fills a generated shape with tetrahedra: a box exactly, with cuboids of about the size `element`; other
-/// shapes by tetrahedralize().
+/// Fills a generated shape with tetrahedra: a box exactly, divided into cuboids with edges of about
+/// `element`; other shapes by tetrahedralize().
 /// @throws Error InvalidOptions as the generators and tetrahedralize() do
 TetrahedralMesh make_solid(const SceneModel& shape, double element);
 
@@ -202,11 +204,11 @@ Deformable make_deformable(const Scene& scene, const ClothMeshes& meshes = {});
 
 /// Makes a simulation of the scene's cloth, bodies and colliders.
 /// @param maps  the maps of the colliders' models, in their order. Build the map of a model with a cache from
-/// the vertices of vertices_at() at 0 s; otherwise the first frame would move the model there
-/// @param caches  [collider_count] the caches of the colliders that have one in the scene, as read by the
-/// caller; may be empty if there are none
-/// @throws Error InvalidOptions, also when the number of maps differs from that of colliders, or a cache is
-/// missing; and as make_deformable() does
+/// the vertices of vertices_at() at 0 s; otherwise the first frame would move the vertices there
+/// @param caches  [collider_count] the cache of each collider that has one in the scene, as read by the
+/// caller; other elements are ignored. May be empty if no collider has a cache
+/// @throws Error as make_deformable() and the constructor of Simulation do; InvalidOptions if the number of
+/// maps differs from that of colliders, or a cache is missing
 Simulation make_simulation(const Scene& scene, std::span<const ColliderMap> maps,
                            const ClothMeshes& meshes = {}, std::span<const VertexCache> caches = {});
 /// Makes the simulation of a scene with one collider.
