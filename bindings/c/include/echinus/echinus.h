@@ -76,7 +76,7 @@ typedef enum echinus_status {
     ECHINUS_INVALID_SCENE = 8,       ///< a scene with an unknown key, a missing key or a value out of range
     ECHINUS_DIVERGED = 9,            ///< a simulation whose positions are not finite or have left all bounds
     ECHINUS_INVALID_ARGUMENT =
-        100, ///< NULL, a wrong size or stride, an index out of range, a map of another kind
+        100, ///< NULL, a wrong size or stride, an index out of range, a map of the wrong kind
     ECHINUS_OUT_OF_MEMORY = 101, ///< out of memory
     ECHINUS_INTERNAL = 102       ///< a bug in the library: please report it
 } echinus_status;
@@ -100,7 +100,7 @@ ECHINUS_API const char* echinus_instruction_set(void);
 /// The sets that this machine supports, by index, the widest first; NULL beyond the last.
 ECHINUS_API const char* echinus_available_instruction_set(size_t number);
 
-/// Selects another set for the whole process, from the next query on. Any thread may call this.
+/// Selects a different set for the whole process, from the next query on. Any thread may call this.
 ECHINUS_API echinus_status echinus_use_instruction_set(const char* name);
 
 /// The index of a face, a particle or a collider that does not exist or is not known. All indices in arrays
@@ -199,7 +199,7 @@ typedef struct echinus_mesh_report {
     echinus_fault duplicate_faces;
     echinus_fault degenerate_faces;
     double signed_volume; ///< positive if faces point outwards; of limited meaning if the mesh is open
-    double centre[3];     ///< of the smallest sphere that encloses all vertices used by faces
+    double centre[3];     ///< centre of the smallest sphere that encloses all vertices used by faces
     double radius;
     /// The spacing of floats at the largest coordinate, if all coordinates are floats and half of this
     /// spacing exceeds a step of a map's lattice; otherwise 0. Finer detail is lost.
@@ -210,7 +210,7 @@ typedef struct echinus_mesh_report {
 
 /// Converts points in double to floats relative to an origin. Any thread may call this.
 /// @param points  [3 count]
-/// @param origin  [3] of a mesh, a map or tetrahedra
+/// @param origin  [3] the origin of a mesh, a map or tetrahedra
 /// @param local   [3 count] out
 ECHINUS_API echinus_status echinus_to_local(const double* points, size_t count, const double* origin,
                                             float* local);
@@ -262,7 +262,7 @@ typedef struct echinus_repair_report {
     uint64_t duplicate_faces_dropped;
     uint64_t doubled_patch_faces_dropped;
     uint64_t components_flipped;
-    uint64_t holes_closed; ///< before components are flipped
+    uint64_t holes_closed; ///< holes that were filled, before components are flipped
     uint64_t holes_left;   ///< holes with more edges, or rims of sheets; 0 unless holes were to be closed
     uint64_t inner_faces_dropped;
     uint64_t sheets_thickened;
@@ -278,8 +278,8 @@ typedef struct echinus_repair_report {
 /// @param report         out; the caller sets its size; or NULL
 /// @param dropped_faces  out, uint32_t: indices of the dropped faces in the given mesh, ascending; faces that
 /// closed a hole have indices after those of the mesh; or NULL
-/// @return ECHINUS_INVALID_MESH; ECHINUS_INVALID_OPTIONS for more edges than 256, or a thickness or weld
-/// distance that is not valid for the mesh
+/// @return ECHINUS_INVALID_MESH; ECHINUS_INVALID_OPTIONS for a max_hole_edges above 256, or a thickness or
+/// weld distance that is not valid for the mesh
 ECHINUS_API echinus_status echinus_mesh_repair(const echinus_mesh* mesh,
                                                const echinus_repair_options* options, echinus_mesh** repaired,
                                                echinus_repair_report* report, echinus_array** dropped_faces);
@@ -324,11 +324,12 @@ ECHINUS_API echinus_status echinus_mesh_intersections(const echinus_mesh* a, con
 
 /// How far the vertices of one mesh are inside another.
 typedef struct echinus_penetration {
-    /// 1: the other mesh is closed, and an exact map can hold it. Otherwise there are no vertices inside.
+    /// 1 if the depth was measured: the other mesh is closed, and an exact map of it is possible. Otherwise
+    /// vertex_count is 0.
     int32_t known;
     uint32_t vertex_count;
     uint32_t deepest_vertex; ///< ECHINUS_NONE without a vertex inside
-    float depth;             ///< its distance from the other surface
+    float depth;             ///< the deepest vertex's distance from the other surface
 } echinus_penetration;
 
 /// A pair of the meshes that were checked, or one mesh and itself.
@@ -336,16 +337,16 @@ typedef struct echinus_checked_meshes {
     uint32_t a, b; ///< a <= b; equal for a mesh and itself
     uint64_t pair_count;
     uint64_t curve_count;
-    double curve_length; ///< of all curves
+    double curve_length; ///< total length of all curves
     echinus_penetration a_in_b, b_in_a;
 } echinus_checked_meshes;
 
-/// Finds which meshes intersect each other or themselves, and those of which one has a vertex inside another.
-/// echinus_mesh_intersections() has their curves.
+/// Finds the pairs of meshes that intersect or of which one has a vertex inside the other, and the meshes
+/// that intersect themselves. echinus_mesh_intersections() returns their curves.
 /// @param meshes        [mesh_count] in one frame
-/// @param thread_count  for the depths; 0: all cores
+/// @param thread_count  for measuring depths; 0: all cores
 /// @param found         out, echinus_checked_meshes, ascending
-/// @return as echinus_mesh_intersections(); ECHINUS_INVALID_MESH also for meshes with different origins
+/// @return as echinus_mesh_intersections(), and ECHINUS_INVALID_MESH for meshes with different origins
 ECHINUS_API echinus_status echinus_check(const echinus_mesh* const* meshes, size_t mesh_count,
                                          uint32_t thread_count, echinus_array** found);
 
@@ -360,10 +361,10 @@ typedef enum echinus_map_kind {
     ECHINUS_MAP_CUSTOM = 3
 } echinus_map_kind;
 
-/// The rule by which the winding number of the surface around a point decides whether it is inside.
+/// The rule by which the winding number of the surface around a point decides whether the point is inside.
 typedef enum echinus_inside_rule {
-    ECHINUS_INSIDE_NONZERO = 0, ///< every winding number except 0
-    ECHINUS_INSIDE_PARITY = 1   ///< an odd winding number: a part within a part is a hole
+    ECHINUS_INSIDE_NONZERO = 0, ///< points with any winding number except 0 are inside
+    ECHINUS_INSIDE_PARITY = 1   ///< points with odd numbers are inside: a part within a part is a hole
 } echinus_inside_rule;
 
 /// The point at which the rays of a map start.
@@ -401,8 +402,8 @@ ECHINUS_API void echinus_exact_map_options_init(echinus_exact_map_options* optio
 /// Builds an exact map, which decides inside or outside by integer arithmetic and finds the true nearest
 /// point of the surface. Its bytes do not depend on the number of threads.
 /// @param options  or NULL for the defaults
-/// @return ECHINUS_INVALID_MESH also when the bounding radius lies outside [1e-15, 1e15];
-/// ECHINUS_INVALID_OPTIONS
+/// @return ECHINUS_INVALID_OPTIONS; ECHINUS_INVALID_MESH if no map can be built, for instance because the
+/// bounding radius lies outside [1e-15, 1e15]
 ECHINUS_API echinus_status echinus_map_build_exact(const echinus_mesh* mesh,
                                                    const echinus_exact_map_options* options,
                                                    echinus_map** map);
@@ -483,7 +484,7 @@ typedef struct echinus_map_info {
     uint32_t face_count;  ///< of the mesh
     uint64_t byte_count;  ///< of all data that queries read
     uint64_t source_hash; ///< identifies the mesh and the options that the map was built from
-    double origin[3];     ///< of the local frame, in the frame of the mesh's file
+    double origin[3];     ///< the origin of the local frame in the frame of the mesh's file
 } echinus_map_info;
 
 /// @param info  out; the caller sets its size
@@ -495,8 +496,8 @@ typedef struct echinus_exact_map_statistics {
     uint32_t dropped_faces; ///< faces without area on the lattice, which are used for distances only
     uint32_t longest_list;  ///< largest number of faces in a band
     float mean_list;
-    float expected_tests;       ///< expected number of faces that a query near the surface tests
-    float certain_share;        ///< share of the bounding sphere's volume with stored answers; 1 if closed
+    float expected_tests; ///< expected number of faces that a query near the surface tests
+    float certain_share;  ///< share of the bounding sphere's volume with stored answers; 1 for a closed mesh
     float uncertain_directions; ///< share of directions along which an answer is computed somewhere
     uint32_t reserved;          ///< 0
 } echinus_exact_map_statistics;
@@ -685,7 +686,7 @@ ECHINUS_API echinus_status echinus_map_intersects(const echinus_map* map, const 
                                                   uint8_t* intersecting);
 
 typedef struct echinus_clearance {
-    float distance; ///< a lower bound of the distance
+    float distance; ///< a lower bound on the distance between the triangle and the surface
     uint32_t face;  ///< the face at this distance; ECHINUS_NONE if none is within the search distance
 } echinus_clearance;
 
@@ -740,9 +741,9 @@ typedef struct echinus_collider {
     size_t size;
     const echinus_map* map;
     echinus_pose pose;
-    double scale[3];            ///< along the axes of the map, before the pose; finite, not 0
-    double linear_velocity[3];  ///< of the pose's translation, units per second
-    double angular_velocity[3]; ///< about the pose's translation, in world axes, radians per second
+    double scale[3];            ///< factors along the axes of the map, before the pose; finite, not 0
+    double linear_velocity[3];  ///< velocity of the pose's translation, units per second
+    double angular_velocity[3]; ///< rotation about the pose's translation, in world axes, radians per second
 } echinus_collider;
 
 /// Fills in a collider at rest in the map's own frame.
@@ -798,8 +799,8 @@ typedef struct echinus_vertex_cache echinus_vertex_cache;
 /// Copies the samples.
 /// @param samples         [3 vertex_count sample_count] in the model's own frame; at least one sample of one
 ///                        vertex
-/// @param start_time      of the first sample, seconds
-/// @param sample_seconds  from one sample to the next; positive
+/// @param start_time      the time of the first sample, seconds
+/// @param sample_seconds  the time from one sample to the next, seconds; positive
 ECHINUS_API echinus_status echinus_vertex_cache_create(const float* samples, size_t sample_count,
                                                        size_t vertex_count, double start_time,
                                                        double sample_seconds, echinus_vertex_cache** cache);
@@ -851,8 +852,8 @@ typedef struct echinus_tetrahedra_file_report {
     uint64_t dropped_vertices;  ///< vertices that no tetrahedron uses
 } echinus_tetrahedra_file_report;
 
-/// Reads .msh (Gmsh 2.2 and 4.1), .vtk (legacy, an unstructured grid) or TetGen's pair .node and .ele, of
-/// which either may be named.
+/// Reads .msh (Gmsh 2.2 and 4.1), .vtk (legacy, an unstructured grid) or TetGen's pair .node and .ele; either
+/// file of the pair may be named.
 /// @param report  out; the caller sets its size; or NULL
 /// @return ECHINUS_UNREADABLE, ECHINUS_WRONG_FORMAT, ECHINUS_DAMAGED or ECHINUS_INVALID_MESH
 ECHINUS_API echinus_status echinus_tetrahedra_read(const char* path, echinus_tetrahedra** body,
@@ -890,14 +891,15 @@ ECHINUS_API void echinus_tetrahedralize_options_init(echinus_tetrahedralize_opti
 typedef struct echinus_tetrahedralize_report {
     size_t size;
     double lattice_size;
-    uint64_t removed_tetrahedra; ///< left out where parts would have met in only an edge or a vertex
+    /// Tetrahedra left out because parts would have met in only an edge or a vertex.
+    uint64_t removed_tetrahedra;
 } echinus_tetrahedralize_report;
 
 /// Fills the inside of an exact map with tetrahedra, by isosurface stuffing. The boundary is closed, manifold
 /// and does not intersect itself; the extreme dihedral angles are 9.3 and 161.7 degrees.
 /// @param report  out; the caller sets its size; or NULL
 /// @return ECHINUS_INVALID_OPTIONS; ECHINUS_INVALID_MESH when no tetrahedron of that size fits into the
-/// model; ECHINUS_INVALID_ARGUMENT for a map of another kind
+/// model; ECHINUS_INVALID_ARGUMENT for a map that is not exact
 ECHINUS_API echinus_status echinus_tetrahedralize(const echinus_map* model,
                                                   const echinus_tetrahedralize_options* options,
                                                   echinus_tetrahedra** body,
@@ -908,7 +910,7 @@ ECHINUS_API void echinus_tetrahedra_destroy(echinus_tetrahedra* body);
 ECHINUS_API size_t echinus_tetrahedra_vertex_count(const echinus_tetrahedra* body);
 /// [3 vertex_count] x, y, z
 ECHINUS_API const float* echinus_tetrahedra_vertices(const echinus_tetrahedra* body);
-/// [3] as of a mesh
+/// [3] the origin of the vertices' frame, as echinus_mesh_origin()
 ECHINUS_API const double* echinus_tetrahedra_origin(const echinus_tetrahedra* body);
 ECHINUS_API size_t echinus_tetrahedra_count(const echinus_tetrahedra* body);
 /// [4 count]
@@ -918,11 +920,11 @@ typedef struct echinus_tetrahedra_report {
     size_t size;
     uint64_t tetrahedron_count;
     uint64_t vertex_count; ///< number of used vertices
-    double volume;         ///< of all tetrahedra
-    double least_volume;   ///< of one tetrahedron
+    double volume;         ///< the total volume
+    double least_volume;   ///< the volume of the smallest tetrahedron
     double shortest_edge;
     double longest_edge;
-    double least_angle_deg; ///< between two faces of a tetrahedron, in degrees
+    double least_angle_deg; ///< smallest angle between two faces of a tetrahedron, in degrees
     double greatest_angle_deg;
 } echinus_tetrahedra_report;
 
@@ -943,7 +945,7 @@ typedef struct echinus_boundary_distance {
 } echinus_boundary_distance;
 
 /// @param distance  out; the caller sets its size
-/// @return ECHINUS_INVALID_ARGUMENT for a map of another kind than an exact one
+/// @return ECHINUS_INVALID_ARGUMENT for a map that is not exact
 ECHINUS_API echinus_status echinus_tetrahedra_measure_distance(const echinus_tetrahedra* body,
                                                                const echinus_map* model,
                                                                uint32_t thread_count,
@@ -965,7 +967,7 @@ ECHINUS_API size_t echinus_embedding_count(const echinus_embedding* embedding);
 /// Computes the positions of the points after the body's vertices have moved.
 /// @param positions       [position_count] the positions of all vertices of the body
 /// @param points          [3 count] out; must not overlap the positions
-/// @return ECHINUS_INVALID_ARGUMENT for another number of positions
+/// @return ECHINUS_INVALID_ARGUMENT for a different number of positions
 ECHINUS_API echinus_status echinus_embedding_carry(const echinus_embedding* embedding, const float* positions,
                                                    size_t position_count, size_t position_stride,
                                                    uint32_t thread_count, float* points);
@@ -993,21 +995,22 @@ typedef struct echinus_attachment {
     uint32_t collider; ///< index in the simulation's colliders
 } echinus_attachment;
 
-/// A particle and a collider of a simulation that do not collide. Faces and edges of the particle also pass
-/// through that collider.
+/// A particle and a collider of a simulation that do not collide. Faces and edges that contain the particle
+/// also pass through the collider.
 typedef struct echinus_collision_filter {
     uint32_t particle;
     uint32_t collider; ///< index in the simulation's colliders
 } echinus_collision_filter;
 
-/// Elastic material between four particles, for ECHINUS_SOLVER_NEWTON; echinus_deformable_soft_body()
-/// computes them.
+/// Elastic material between four particles, for ECHINUS_SOLVER_NEWTON; echinus_deformable_soft_body() makes
+/// such elements.
 typedef struct echinus_elastic_tetrahedron {
     uint32_t particles[4];
-    float gradients[3][3]; ///< at rest: rows of the inverse of the matrix with columns b - a, c - a and d - a
-    float volume;          ///< at rest; positive
-    float mu, lambda;      ///< the Lame parameters: mu positive, lambda not negative
-    float damping;         ///< viscosity divided by mu, seconds
+    /// The rows of the inverse of the matrix with the columns b - a, c - a and d - a at rest.
+    float gradients[3][3];
+    float volume;     ///< the volume at rest; positive
+    float mu, lambda; ///< the Lame parameters: mu positive, lambda not negative
+    float damping;    ///< viscosity divided by mu, seconds
 } echinus_elastic_tetrahedron;
 
 /// Particles, their constraints and materials, in world units.
@@ -1020,12 +1023,12 @@ typedef struct echinus_deformable_arrays {
     const float* positions;      ///< [3 particle_count]
     const float* velocities;     ///< [3 particle_count] units per second; NULL: at rest
     const float* inverse_masses; ///< [particle_count] 0 for a pinned particle; NULL means 1 for all
-    /// In the order of relaxation; Newton uses only those of threads
+    /// The distance constraints in the order of relaxation; Newton uses only structural ones of threads
     const echinus_distance_constraint* constraints;
     size_t constraint_count;
     const uint32_t* faces; ///< [3 face_count]
     size_t face_count;
-    const echinus_attachment* attachments; ///< of pinned particles, at most one for each
+    const echinus_attachment* attachments; ///< attachments of pinned particles, at most one for each
     size_t attachment_count;
     const echinus_elastic_tetrahedron* tetrahedra;
     size_t tetrahedron_count;
@@ -1354,7 +1357,7 @@ ECHINUS_API echinus_status echinus_simulation_read_options(const echinus_simulat
 ECHINUS_API size_t echinus_simulation_collider_count(const echinus_simulation* simulation);
 /// A collider in its present pose.
 /// @param collider  out; the caller sets its size; its map is valid as long as the simulation. For a
-/// deforming collider it is the map of the vertices at the time of the last such call
+/// deforming collider it is the map of the vertices at the time of the last call of this function
 ECHINUS_API echinus_status echinus_simulation_read_collider(const echinus_simulation* simulation,
                                                             size_t index, echinus_collider* collider);
 
@@ -1370,7 +1373,8 @@ ECHINUS_API echinus_status echinus_simulation_set_collider_pose(echinus_simulati
                                                                 const echinus_pose* pose);
 
 /// The collider follows keyframes: each frame moves it to the pose of echinus_pose_at() at the frame's end.
-/// It starts from its present pose, so place it there first. Without keys it does not move.
+/// The collider starts from its present pose, so place it at the present pose of echinus_pose_at() first.
+/// Without keys it does not move.
 /// @param keys  [key_count]; their times ascend, in seconds since the simulation began
 /// @return ECHINUS_INVALID_OPTIONS, naming the key
 ECHINUS_API echinus_status echinus_simulation_set_collider_keyframes(echinus_simulation* simulation,
@@ -1379,9 +1383,9 @@ ECHINUS_API echinus_status echinus_simulation_set_collider_keyframes(echinus_sim
                                                                      size_t key_count);
 
 /// During the next frame the vertices of a collider move to these positions along straight lines; then they
-/// stop. This needs an exact map and the collision of surfaces; the map is rebuilt in this call.
-/// @param vertices  [vertex_count] in the model's own frame: as many as the mesh from which its map was built
-/// has, in the same order
+/// stop. The call needs an exact map and the collision of surfaces; the map is rebuilt in this call.
+/// @param vertices  [vertex_count] the vertices of the mesh from which the collider's map was built, in its
+/// order and frame
 /// @return ECHINUS_INVALID_OPTIONS; on failure nothing changes
 ECHINUS_API echinus_status echinus_simulation_set_collider_vertices(echinus_simulation* simulation,
                                                                     size_t index, const float* vertices,
@@ -1390,7 +1394,7 @@ ECHINUS_API echinus_status echinus_simulation_set_collider_vertices(echinus_simu
 
 /// Each frame moves the vertices of a collider to those of echinus_vertex_cache_at() at the frame's end. The
 /// cache may be destroyed afterwards.
-/// @return as above
+/// @return as echinus_simulation_set_collider_vertices()
 ECHINUS_API echinus_status echinus_simulation_set_collider_cache(echinus_simulation* simulation, size_t index,
                                                                  const echinus_vertex_cache* cache);
 
@@ -1412,11 +1416,13 @@ ECHINUS_API echinus_status echinus_simulation_set_collider_free(echinus_simulati
 /// A contact of the last frame, between a particle, edge or face of the deformable and a
 /// collider, or between two elements of the deformable.
 typedef struct echinus_contact_point {
-    double position[3];    ///< on the deformable, when the contact last exerted a force; world coordinates
-    double normal[3];      ///< unit, towards the deformable or, in self-collision, its first element
-    double gap;            ///< when the contact last exerted a force; positive
-    double normal_impulse; ///< in the frame, along the normal, on the deformable or its first element, N s
-    double friction_impulse[3]; ///< the same, perpendicular to the normal, N s
+    double position[3]; ///< on the deformable, when the contact last exerted a force; world coordinates
+    double normal[3]; ///< unit; points towards the deformable or, in self-collision, towards the first of the
+                      ///< two elements in contact
+    double gap;       ///< the distance when the contact last exerted a force; positive
+    double normal_impulse;      ///< impulse of the frame along the normal, on the deformable or, in
+                                ///< self-collision, on the first of the two elements, N s
+    double friction_impulse[3]; ///< impulse of the frame perpendicular to the normal, on the same one, N s
     uint32_t collider;          ///< ECHINUS_NONE: the deformable is in contact with itself
     /// The particles of the deformable's element, followed in self-collision by those of the second one: a
     /// vertex and the three corners of a face, or the two ends of either edge. Unused entries are
@@ -1428,9 +1434,9 @@ typedef struct echinus_contact_point {
 /// saved state.
 ECHINUS_API echinus_status echinus_simulation_record_contacts(echinus_simulation* simulation, int32_t is_on);
 
-/// Returns the contacts that were recorded in the last frame. Their impulses divided by the time step sum to
-/// the opposite of the load on each collider, except for the loads of attached particles and of particles
-/// whose displacement was truncated. ECHINUS_SOLVER_JAKOBSEN records none.
+/// Returns the contacts that were recorded in the last frame. For each collider, the impulses of its contacts
+/// divided by the time step sum to the opposite of the load on it, except for the loads of attached particles
+/// and of particles whose displacement was truncated. ECHINUS_SOLVER_JAKOBSEN records none.
 /// @param points  out, echinus_contact_point
 ECHINUS_API echinus_status echinus_simulation_contact_points(const echinus_simulation* simulation,
                                                              echinus_array** points);
@@ -1493,7 +1499,7 @@ ECHINUS_API echinus_status echinus_particle_collision_set_collider_friction(
 
 /// Corrects the particles after a step of the solver, and moves the colliders. ParticleCollision::correct()
 /// describes the treatment of NaN.
-/// @param previous_positions  [3 particle_count] at the start of the step
+/// @param previous_positions  [3 particle_count] the positions at the start of the step
 /// @param positions       [3 particle_count] in: the solver's positions; out: corrected positions
 /// @param velocities      [3 particle_count] in and out, units per second; or NULL
 /// @param inverse_masses  [particle_count] 0 for pinned particles; or NULL: all are pushed
@@ -1559,8 +1565,8 @@ ECHINUS_API echinus_status echinus_surface_collision_set_collider_pose(echinus_s
                                                                        size_t index,
                                                                        const echinus_pose* pose);
 
-/// Corrects the particles after a step of the solver, which starts from the positions at the end of the last
-/// one, and moves the colliders.
+/// Corrects the particles after a step of the solver, and moves the colliders. The step starts from
+/// echinus_surface_collision_positions(), at which the previous step ended.
 /// @param positions       [3 particle_count] in: the solver's positions; out: corrected positions
 /// @param velocities      [3 particle_count] in and out, units per second; or NULL
 /// @param particle_count  the number of particles of the object
@@ -1576,8 +1582,8 @@ ECHINUS_API echinus_status echinus_surface_collision_correct(echinus_surface_col
 
 /// [3 particle_count] The present positions, which are free of intersections. The address does not change.
 ECHINUS_API const float* echinus_surface_collision_positions(const echinus_surface_collision* collision);
-/// Unresolved pairs of elements, for which no free space was proven, summed over all steps; if 0, no faces
-/// intersect.
+/// The number of unresolved pairs of elements, for which no free space was proven, summed over all steps.
+/// While it is 0, no faces intersect, except because of rounding far from the origin (docs/limits.md).
 ECHINUS_API uint64_t echinus_surface_collision_unresolved_count(const echinus_surface_collision* collision);
 
 // ---- Scenes: simulations as JSON (docs/scenes.md) ----
