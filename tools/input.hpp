@@ -21,7 +21,7 @@ class Input {
     /// Reads up to `byte_count` bytes; fewer only at the end.
     /// @throws echinus::Error Unreadable
     std::size_t read(void* bytes, std::size_t byte_count);
-    /// The most characters of a line; a device such as /dev/zero is one line without end.
+    /// The maximum number of characters in a line, since a device such as /dev/zero is a single endless line.
     static constexpr std::size_t kMaxLineLength = std::size_t{1} << 20;
 
     /// The next line without its line break (LF or CR LF); false at the end.

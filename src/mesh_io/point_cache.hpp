@@ -48,7 +48,7 @@ class PointCacheReader {
         return start_frame_ + frames_per_sample_ * static_cast<double>(sample);
     }
     /// @pre sample < sample_count()
-    /// @throws Error Damaged if a position is not finite, or the file was shortened; Unreadable
+    /// @throws Error Unreadable, or Damaged if a position is not finite or the file was shortened
     std::vector<Vec3f> positions(std::size_t sample) const;
 
   private:

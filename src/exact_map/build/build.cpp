@@ -202,7 +202,8 @@ class MapMaker {
     LatticeSnapper snapper_;
     LatticeMesh lattice_; ///< faces in the order of the tree, once it is known
     std::size_t dropped_faces_ = 0;
-    std::vector<Triangle> faces_before_; ///< swapped with the lattice's faces
+    std::vector<Triangle> faces_before_; ///< scratch: the lattice's faces before order_faces() puts them into
+                                         ///< the order of the tree
     std::vector<std::uint32_t> numbers_before_;
     FaceTree tree_;
     BandFinder finder_;

@@ -332,8 +332,8 @@ class OctantCover {
     /// gives their intersection and loses no point. The intersection is empty if the cover, within its slack,
     /// includes only parts that the polygon does not enter; a plane that is steep relative to the rays may
     /// then be anywhere, even at infinity. In this case there is no point to lose, and clamping yields the
-    /// end of the polygon's range next to the plane, which is on the lattice. As clamping keeps the order of
-    /// two numbers, low never exceeds high.
+    /// end of the polygon's range nearer to the plane; that end is on the lattice. As clamping keeps the
+    /// order of two numbers, low never exceeds high.
     template <bool down>
     Range l1_range(std::int32_t i, std::int32_t j, std::uint32_t parts) const {
         if (!std::isfinite(reciprocal_error_)) return l1_; // edge-on

@@ -97,8 +97,8 @@ bool ContactSide::mark_others(const PointArrays& reference, const PointArrays& p
 }
 
 /// From now on the list contains the displacements of the marked vertices in addition to those of the others.
-/// @param starts_there  whether all displacements begin where the listed ones begin; otherwise the unmarked
-/// vertices are listed as resting where the listed displacements end
+/// @param starts_there  whether all displacements begin near where the listed ones do; if not, the unmarked
+/// vertices are listed as resting at the ends of their listed displacements
 void ContactSide::take_others(bool starts_there) {
     if (!starts_there) listed_from = listed_to;
     listed_from.resize(is_other_.size());
@@ -110,8 +110,8 @@ void ContactSide::take_others(bool starts_there) {
     }
 }
 
-/// After a step, displacements begin and end near those whose pairs are listed, or both begin and end near
-/// where those end. Pairs are searched only for the vertices for which neither is true.
+/// After a step, the displacement of a vertex usually begins and ends near the one whose pairs are listed, or
+/// else begins and ends near that one's end. Pairs are searched only for vertices to which neither applies.
 bool ContactSide::list(Places ends, const Workers& workers) {
     to_frame_ahead(ends, goal);
     bool starts_there = false;
