@@ -32,7 +32,7 @@ export type ErrorCode =
     | 'Deleted'
     /** The host lacks the features that missingFeatures() names. */
     | 'Unsupported'
-    /** The module has crashed through a bug. Every further call throws this: load() it again. */
+    /** The module has crashed because of a bug. Every further call throws this error: load() the module again. */
     | 'Crashed'
     | 'Internal';
 
@@ -63,7 +63,7 @@ export class Echinus {
     /** Only load() constructs these. */
     private constructor();
 
-    /** All memory that the instance has allocated from the host. It never shrinks; at most 4 GiB. */
+    /** The size of the memory that the instance has allocated from the host; it never shrinks, and is at most 4 GiB. */
     readonly memoryByteCount: number;
     /**
      * 'wasm', or 'scalar' for the reference implementation, which gives the same answers more slowly. Applies to the
@@ -101,7 +101,7 @@ export class Echinus {
     makeBox(size: Vec3, segments?: number): Mesh;
     /**
      * Finds the meshes that intersect each other or themselves, and the pairs of which one mesh has a vertex inside the
-     * other (echinus/intersections.hpp). All meshes must lie in one frame. Mesh.intersections() has the curves.
+     * other (echinus/intersections.hpp). All meshes must be in the same frame. Mesh.intersections() returns the curves.
      */
     check(meshes: readonly Mesh[]): CheckedMeshes[];
 
@@ -121,8 +121,8 @@ export class Echinus {
 
     /**
      * Collision for particles that another solver moves.
-     * @throws InvalidOptions as for the options of a scene, and, with `surfaces`, for an initial state in which
-     * surfaces intersect
+     * @throws InvalidOptions for invalid options and, with `surfaces`, for an initial state in which surfaces
+     * intersect
      */
     makeCollision(options: CollisionOptions): Collision;
 
@@ -136,10 +136,10 @@ export class Echinus {
 // ---- Buffers
 
 /**
- * Memory of the module that both sides read and write.
+ * Memory of the WebAssembly module that both JavaScript and the module read and write.
  *
- * A view lasts until memory grows, which any call into the module may cause; then the old array is empty, and the
- * getter returns a new one. So keep the buffer and get `.view` at each use, which costs a comparison.
+ * A view is valid until the module's memory grows, which any call into the module may cause; then the old array is
+ * empty, and the getter returns a new one. So keep the buffer and get `.view` at each use, which costs a comparison.
  */
 export class PointBuffer extends Deletable {
     readonly length: number;
@@ -153,13 +153,13 @@ export class FlagBuffer extends Deletable {
 }
 export class ContactBuffer extends Deletable {
     static readonly BYTES: 36;
-    /** Distance from one contact to the next, in numbers of `floats` and `ints`. */
+    /** Distance from one contact to the next, in elements of `floats` and `ints`. */
     static readonly STRIDE: 9;
     static readonly POINT: 0;
     static readonly NORMAL: 3;
     static readonly DEPTH: 6;
     static readonly FACE: 7;
-    /** In `bytes`. */
+    /** This offset and the next two are in `bytes`. */
     static readonly INSIDE: 32;
     static readonly CERTAIN: 33;
     static readonly FEATURE: 34;
@@ -209,8 +209,8 @@ export class Mesh extends Deletable {
     /** Makes a repaired copy. @param repairs  by default all */
     repair(repairs?: readonly Repair[]): { mesh: Mesh; report: RepairReport };
     /**
-     * The intersecting faces, by exact tests (echinus/intersections.hpp): pairs of a face of this mesh and
-     * a face of the other, both in the same frame, ascending. @returns [2 pair_count]
+     * The pairs of intersecting faces, found by exact tests (echinus/intersections.hpp): a face of this mesh and a face
+     * of the other, ascending. Both meshes must be in the same frame. @returns [2 pair_count]
      */
     intersectingPairs(other: Mesh): Uint32Array;
     /** Pairs of faces of this mesh that intersect other than in shared vertices and edges, ascending. @returns [2 pair_count] */
@@ -236,7 +236,7 @@ export interface Intersections {
 /** How far the vertices of one mesh are inside another: the depth is the distance of the deepest one from the other surface. */
 export interface Penetration {
     vertexCount: number;
-    /** null without a vertex inside. */
+    /** null if no vertex is inside. */
     deepestVertex: number | null;
     depth: number;
 }
@@ -248,7 +248,7 @@ export interface CheckedMeshes {
     pairCount: number;
     curveCount: number;
     curveLength: number;
-    /** null if the other mesh is not closed or no exact map of it is possible, and for a mesh and itself. */
+    /** null if the other mesh is not closed or no exact map of it is possible, or if both are the same mesh. */
     aInB: Penetration | null;
     bInA: Penetration | null;
 }
@@ -295,7 +295,7 @@ export interface RepairReport {
     duplicateFacesDropped: number;
     doubledPatchFacesDropped: number;
     componentsFlipped: number;
-    /** Only a scene can request these; otherwise 0. */
+    /** Only a scene can request the repairs of this count and the next three; otherwise they are 0. */
     holesClosed: number;
     holesLeft: number;
     innerFacesDropped: number;
@@ -465,11 +465,11 @@ export interface ExactRay {
     /** Unit vectors. */
     cellCorners: [number, number, number][];
     /**
-     * The intervals that may contain surface; windingBelow is the winding number of the gap towards the centre, null if
-     * there is no single number.
+     * The intervals that may contain parts of the surface; windingBelow is the winding number in the gap next to the
+     * interval, towards the centre, or null if there is no single number.
      */
     bands: { from: number; to: number; faceCount: number; windingBelow: number | null }[];
-    /** The distances at which the ray meets the surface. */
+    /** The distances from the centre at which the ray meets the surface. */
     crossings: number[];
     intervals: RayInterval[];
 }
@@ -543,7 +543,7 @@ export interface CollisionOptions {
     /** [3 particle_count] The initial positions, outside the models. */
     positions: ArrayLike<number>;
     colliders: readonly PlacedMap[];
-    /** The distance that particles keep from the models, units. */
+    /** The distance, in units, that particles keep from the models. */
     thickness: number;
     /** [3 face_count] The particles of each face; required by `surfaces`. */
     faces?: ArrayLike<number>;
@@ -646,7 +646,7 @@ export interface SceneDescription {
          */
         self_thickness?: number;
         // End of options.
-        /** Colliders, by their numbers, that it passes through. */
+        /** The numbers of the colliders that the cloth passes through. */
         ignores?: readonly number[];
     };
     bodies?: readonly Body[];
@@ -662,7 +662,7 @@ export interface SceneDescription {
         deformable?: boolean;
     }[];
     material?: {
-        /** Without a cloth, these two keys take the place of those of `cloth`. */
+        /** Without a cloth, these two keys replace those of `cloth`. */
         thickness?: number;
         self_thickness?: number;
         // Options: jakobsen. Generated by bindings/generate_options; edit bindings/options.toml.
@@ -787,7 +787,7 @@ export interface Placement {
     angular_velocity?: Vec3;
     /** With a mass, in kg, the model moves freely from its velocities. */
     mass?: number;
-    /** In place of position, rotation, velocities and mass. */
+    /** Keyframes are given instead of position, rotation, velocities and mass. */
     keyframes?: readonly Keyframe[];
 }
 
@@ -798,7 +798,7 @@ export interface Keyframe {
     rotation?: { axis: Vec3; degrees: number };
 }
 
-/** The path of a handle, without which it does not move, and its release time in seconds. */
+/** The path of a handle and its release time in seconds. Without keyframes the handle does not move. */
 export interface Handle {
     keyframes?: readonly Keyframe[];
     release?: number;
@@ -828,7 +828,7 @@ export interface Body {
     pins?: VertexChoice;
     attachments?: VertexChoice | readonly Attachments[];
     handles?: readonly (Handle & { vertices: VertexChoice })[];
-    /** Colliders, by their numbers, that it passes through. */
+    /** The numbers of the colliders that the body passes through. */
     ignores?: readonly number[];
 }
 
@@ -889,7 +889,7 @@ export class Scene extends Deletable {
     /**
      * The scene's cloth, bodies and colliders, ready to step. The map need not be of the kind that the scene requests.
      * @param maps     the map of the collider, or one for each of `colliders`, in their order
-     * @param options  allowOpenCollider: accept the exact map of an open mesh, through whose holes particles may pass;
+     * @param options  allowOpenCollider: accept the exact map of an open mesh, whose holes particles may pass through;
      *                 cloth, clothAtRest: the meshes of clothFile and clothRestFile, welded; bodies: for each body its
      *                 closed surface, which is filled with tetrahedra; null for a generated shape
      * @throws InvalidOptions for the exact map of an open mesh without allowOpenCollider, if the number of maps differs
@@ -949,11 +949,14 @@ export class Simulation extends Deletable {
      * @throws InvalidOptions; in that case nothing changes
      */
     setColliderFree(mass: number, index?: number): void;
-    /** The load that the cloth exerted on a collider in the last frame by contact and friction, averaged over the frame: N, N m. */
+    /**
+     * The load that the cloth exerted on a collider in the last frame by contact, friction and attached particles,
+     * averaged over the frame; in N and N m.
+     */
     loadOn(index?: number): { readonly force: Vec3; readonly torque: Vec3 };
     /** Sets whether the following frames record their contacts; off by default. */
     recordContacts(isOn?: boolean): void;
-    /** The contacts that were recorded in the last frame; copies. */
+    /** Copies of the contacts that were recorded in the last frame. */
     readonly contactPoints: ContactPoints;
     /**
      * Sets the velocities of a collider, by default the first, in units and radians per second. The collider keeps them
@@ -961,11 +964,11 @@ export class Simulation extends Deletable {
      */
     setColliderVelocity(linear: Vec3, angular: Vec3, index?: number): void;
     /**
-     * Deforms a collider, by default the first: during the next step the vertices of its mesh move to
-     * these positions along straight lines; then they stop. The faces stay the same, and the pose is
-     * independent and may move at the same time. Faces of the cloth are kept off the moving faces as off any other
-     * faces, and attached particles follow the face that was nearest to them when the collider first deformed. The
-     * exact map is rebuilt, which takes about a microsecond per face.
+     * Deforms a collider, by default the first: during the next step the vertices of its mesh move to these positions
+     * along straight lines; then they stop. The faces stay the same, and the pose is independent and may change at the
+     * same time. Faces of the cloth are kept off the moving faces as they are off any others, and attached particles
+     * follow the face that was nearest to them when the collider first deformed. The exact map is rebuilt, which takes
+     * about a microsecond per face.
      * @param vertices  [3 vertexCount] in the collider's frame, in the order of the mesh from which its
      *                  map was built; copied, unless they are a PointBuffer
      * @throws InvalidOptions for a different number of vertices, a vertex that is not finite, a collider without an
@@ -975,9 +978,10 @@ export class Simulation extends Deletable {
     setColliderVertices(vertices: PointBuffer | Float32Array, index?: number): void;
 
     /**
-     * Sets the velocity of a particle, in units per second. To drag particles with the pointer, set the velocity of the
-     * grabbed particle and its near neighbours before each step to (target of the pointer - present position) / (about
-     * 5 time steps): the cloth pulls at them and the collider stops them, so none of them is dragged into the model.
+     * Sets the velocity of a particle, in units per second. To drag particles with the pointer, set before each step
+     * the velocity of the grabbed particle and its near neighbours to (target of the pointer - present position) /
+     * (about 5 time steps): the cloth pulls at them and the collider stops them, so none of them is dragged into the
+     * model.
      */
     setParticleVelocity(particle: number, velocity: Vec3): void;
     /**
@@ -988,34 +992,41 @@ export class Simulation extends Deletable {
      */
     blow(wind: Vec3, rate: number): void;
 
-    /** The particles that are inside the first collider now, by its map. */
+    /** Tells which particles are now inside the first collider, according to its map. */
     containsBatch(inside: FlagBuffer): FlagBuffer;
-    /** The contacts of the particles, in world units, for instance to colour the cloth by depth. */
+    /**
+     * The contacts of the particles with the first collider, in world units, for instance to colour the cloth by depth.
+     */
     contactsBatch(margin: number, contacts: ContactBuffer): ContactBuffer;
 }
 
-/** The contacts of a frame, of the cloth with colliders and with itself. */
+/** The contacts of the cloth with colliders and with itself in one frame. */
 export interface ContactPoints {
-    /** [3 count] positions on the cloth when the contact last exerted a force, in world coordinates. */
+    /** [3 count] points of contact on the cloth when the contact last exerted a force, in world coordinates. */
     readonly positions: Float64Array;
-    /** [3 count] unit normals towards the cloth or, in self-collision, its first element. */
+    /**
+     * [3 count] unit normals, which point towards the cloth or, in self-collision, towards the first of the two
+     * elements.
+     */
     readonly normals: Float64Array;
     /** [count] the gap when the contact last exerted a force. */
     readonly gaps: Float64Array;
-    /** [count] the impulse of the frame along the normal, on the cloth or its first element, N s. */
+    /**
+     * [count] the impulse of the frame along the normal, N s, on the cloth or, in self-collision, on the first element.
+     */
     readonly normalImpulses: Float64Array;
     /** [3 count] the impulse of friction in the frame, perpendicular to the normal, N s. */
     readonly frictionImpulses: Float64Array;
     /** [count] the index of the collider; -1 for a contact of the cloth with itself. */
     readonly colliders: Int32Array;
     /**
-     * [4 count] the particles of the cloth's element, followed in self-collision by those of the second one: a vertex
-     * and the three corners of a face, or the two ends of each edge; -1 for unused entries.
+     * [4 count] the particles of the cloth's element in contact, followed in self-collision by those of the second
+     * element: a vertex and the three corners of a face, or the two ends of each edge; -1 for unused entries.
      */
     readonly particles: Int32Array;
 }
 
-/** As in echinus/simulation.hpp. Queries are counted over all particles and relaxations. */
+/** As in echinus/simulation.hpp. Queries are counted for all particles and relaxations. */
 export interface SimulationProfile {
     integrationSeconds: number;
     constraintSeconds: number;

@@ -8,8 +8,8 @@ export interface JoltCollisionOptions extends Omit<CollisionOptions, 'positions'
 }
 
 /**
- * After each JoltInterface.Step(), step() moves vertices of the soft body that entered or crossed a model back out.
- * Disable Jolt's own collision between the soft body and the same model, by object layers. Vertices whose mInvMass is 0
+ * After each JoltInterface.Step(), step() moves vertices of the soft body that entered or crossed a model back out. Use
+ * object layers to disable Jolt's own collision between the soft body and the same model. Vertices whose mInvMass is 0
  * at that time are not moved. Four steps of 1/240 s stretch a cloth less than one of 1/60 s.
  */
 export class JoltCollision {

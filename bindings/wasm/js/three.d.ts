@@ -3,11 +3,11 @@ import type { BufferGeometry, Matrix4 } from 'three';
 import type { Echinus, Mesh, Simulation } from 'echinus';
 
 /**
- * The triangles of a geometry, indexed or not, with any kind of position attribute. Vertices at the same position, to a
- * millionth of the largest coordinate, are joined before `matrix` is applied, so the order of vertices changes.
+ * The triangles of a geometry, indexed or not, with any kind of position attribute. Vertices whose positions agree to a
+ * millionth of the largest coordinate are joined before `matrix` is applied, so the order of vertices changes.
  * drawRange, groups, morph targets and skins are ignored. Delete the mesh after use.
  * @param matrix  applied to the vertices, for instance object.matrixWorld; one that mirrors reverses the faces
- * @throws InvalidMesh as makeMesh()
+ * @throws InvalidMesh as makeMesh() does
  */
 export function meshOfGeometry(echinus: Echinus, geometry: BufferGeometry, matrix?: Matrix4 | null): Mesh;
 
