@@ -51,10 +51,10 @@ std::size_t count_samples(double seconds, double frames_per_second, std::size_t 
     const double count = 1 + std::ceil(std::max(0.0, seconds * frames_per_second - kRounding));
     if (!(count * static_cast<double>(vertex_count) <= static_cast<double>(kMostCachePositions)))
         source.fail(ErrorCode::InvalidMesh,
-                    "the animation takes " + std::to_string(seconds) + " s, at " +
-                        std::to_string(frames_per_second) + " frames per second too many for " +
-                        std::to_string(vertex_count) + " vertices: at most " +
-                        std::to_string(kMostCachePositions) +
+                    "the animation lasts " + std::to_string(seconds) + " s, and at " +
+                        std::to_string(frames_per_second) +
+                        " frames per second it has too many samples for " + std::to_string(vertex_count) +
+                        " vertices: at most " + std::to_string(kMostCachePositions) +
                         " positions are kept; use fewer frames per second or a shorter animation");
     return static_cast<std::size_t>(count);
 }

@@ -524,7 +524,7 @@ TEST_F(ReadGltf, RefusesNumbersThatMakeNoSense) {
     expect_invalid(R"("count":12)", R"("count":11)",
                    "meshes[0].primitives[0] has 11 corners, not a multiple of 3");
     expect_invalid("5126", "5124", "accessors[0].componentType is not a component type of glTF");
-    expect_invalid("VEC3", "VEC5", "accessors[0].type is not a type of glTF");
+    expect_invalid("VEC3", "VEC5", "accessors[0].type is not an accessor type of glTF");
     expect_invalid("VEC3", "SCALAR", "has elements of 1 numbers in place of 3");
     expect_invalid("5123", "5122",
                    "meshes[0].primitives[0].indices has numbers of a type that is not allowed for indices");
@@ -562,7 +562,7 @@ TEST_F(ReadGltf, NoticesThatAFileIsShorterThanItSays) {
     expect_refused(ErrorCode::Damaged, "the file says that it has", "long.glb", glb + "x");
     expect_refused(ErrorCode::Damaged, "the file ends at byte 10", "head.glb", glb.substr(0, 10));
     const std::string gltf = exported(kGltf);
-    expect_refused(ErrorCode::Damaged, "the JSON is not well formed at its byte", "cut.gltf",
+    expect_refused(ErrorCode::Damaged, "the JSON is malformed at byte", "cut.gltf",
                    gltf.substr(0, gltf.size() - 5));
 }
 
@@ -606,7 +606,7 @@ TEST_F(ReadGltf, RefusesJsonThatIsNoneOrAmbiguous) {
     const auto expect_damaged = [&](const std::string& words, const std::string& text) {
         expect_refused(ErrorCode::Damaged, words, "a.gltf", text);
     };
-    expect_damaged("the JSON is not well formed at its byte 2", "{" + std::string(2'000'000, '['));
+    expect_damaged("the JSON is malformed at byte 2", "{" + std::string(2'000'000, '['));
     expect_damaged("the JSON has too many nested brackets",
                    replaced(json, R"({"asset")",
                             R"({"extras":)" + std::string(2'000'000, '[') + std::string(2'000'000, ']') +

@@ -774,7 +774,7 @@ def test_an_archive_that_a_worker_lacks_memory_for_is_a_sentence(folder, tmp_pat
         raise MemoryError
 
     monkeypatch.setattr(_tasks, "archive_of", without_memory)
-    with pytest.raises(RuntimeError, match="labels-000000.tar: a worker has too little memory for it"):
+    with pytest.raises(RuntimeError, match="labels-000000.tar: a worker does not have enough memory to write this archive"):
         _tasks.run(corpus_of(folder, tmp_path, form="webdataset").tasks(str(tmp_path))[0])
 
 

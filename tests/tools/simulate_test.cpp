@@ -449,9 +449,12 @@ TEST_F(SimulateCommand, NamesTheSuccessorsOfFormerOptions) {
         options.insert(options.begin(), command.begin(), command.end());
         expect_failure(2, sentence, options);
     };
-    refuses({"--surfaces", "off"}, "--surfaces is now --collision surfaces, or particles for off");
-    refuses({"--surfaces=on"}, "--surfaces is now --collision surfaces, or particles for off");
-    refuses({"--self", "on"}, "--self is now --collision surfaces_and_self, or surfaces for off");
+    refuses({"--surfaces", "off"},
+            "--surfaces is now --collision surfaces; to turn it off, use --collision particles");
+    refuses({"--surfaces=on"},
+            "--surfaces is now --collision surfaces; to turn it off, use --collision particles");
+    refuses({"--self", "on"},
+            "--self is now --collision surfaces_and_self; to turn it off, use --collision surfaces");
     EXPECT_EQ(run({"simulate", "--help"}).output.find("--surfaces"), std::string::npos);
     refuses({"--surface"}, "there is no option --surface");
 }

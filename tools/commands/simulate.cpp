@@ -480,8 +480,8 @@ void add_options(Command command, SimulateArguments& arguments) {
         {"surfaces_and_self", CollisionMode::SurfacesAndSelf}};
     add_choice(command, "--collision", arguments.collision, modes,
                "The parts that collide; overrides the scene's collision");
-    command.add_former("--surfaces", "--collision surfaces, or particles for off");
-    command.add_former("--self", "--collision surfaces_and_self, or surfaces for off");
+    command.add_former("--surfaces", "--collision surfaces; to turn it off, use --collision particles");
+    command.add_former("--self", "--collision surfaces_and_self; to turn it off, use --collision surfaces");
     command
         .add("--threads", &arguments.thread_count,
              "Threads that build the map, simulate and test for intersections; 0: all cores. By default all "

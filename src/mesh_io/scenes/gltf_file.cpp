@@ -291,8 +291,7 @@ void GltfFile::parse(std::string_view text) {
         json::sax_parse(text, &pass);
         document_ = json::parse(text);
     } catch (const json::parse_error& error) {
-        source_.fail(ErrorCode::Damaged, "the JSON is not well formed at its byte " +
-                                             std::to_string(error.byte) +
+        source_.fail(ErrorCode::Damaged, "the JSON is malformed at byte " + std::to_string(error.byte) +
                                              "; export the file again, as UTF-8");
     } catch (const json::exception&) {
         source_.fail(ErrorCode::Damaged, "the JSON has a number that is too large to be read");
@@ -404,7 +403,7 @@ std::size_t width_of(const GltfValue& type) {
     const std::string name = type.string();
     for (const auto& [known, width] : kWidths)
         if (name == known) return width;
-    type.fail("is not a type of glTF");
+    type.fail("is not an accessor type of glTF");
 }
 
 /// glTF is little-endian.

@@ -81,7 +81,7 @@ def run(task: Task) -> list[Record]:
         try:
             records.append(_write(task, task.archive, archive_of(members)))
         except MemoryError:
-            raise RuntimeError(f"{task.archive}: a worker has too little memory for it; give it more, or archives fewer meshes") from None
+            raise RuntimeError(f"{task.archive}: a worker does not have enough memory to write this archive; give the workers more memory, or put fewer meshes into an archive") from None
     return records
 
 
