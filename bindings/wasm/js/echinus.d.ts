@@ -978,10 +978,10 @@ export class Simulation extends Deletable {
     setColliderVertices(vertices: PointBuffer | Float32Array, index?: number): void;
 
     /**
-     * Sets the velocity of a particle, in units per second. To drag particles with the pointer, set before each step
-     * the velocity of the grabbed particle and its near neighbours to (target of the pointer - present position) /
-     * (about 5 time steps): the cloth pulls at them and the collider stops them, so none of them is dragged into the
-     * model.
+     * Sets the velocity of a particle, in units per second. Before each step, a page that drags particles with the
+     * pointer sets the velocity of the grabbed particle and its near neighbours to (target of the pointer - present
+     * position) / (about 5 time steps): the cloth pulls at them and the collider stops them, so none of them is dragged
+     * into the model.
      */
     setParticleVelocity(particle: number, velocity: Vec3): void;
     /**
