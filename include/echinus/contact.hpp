@@ -34,7 +34,7 @@ struct Contact {
     /// depends on how the holes would be closed (kCertainMargin in exact_map.hpp). It is always true with a
     /// distance map, which does not assess its answers.
     bool certain = true;
-    Feature feature = Feature::Unknown; ///< the part of the face that is nearest
+    Feature feature = Feature::Unknown; ///< the part of the face that contains `point`
 
     /// Is there a contact? The particle is then inside, or outside within the margin.
     bool found() const { return inside || normal != Vec3f{}; }

@@ -32,7 +32,7 @@ class CustomMap {
     /// Finds a contact for each particle that is inside, or outside and at most the margin away from the
     /// surface: the point of the surface to which it is pushed out, and the normal there. Particles that are
     /// farther away may get a contact as well, since a map that measures along rays must search beyond the
-    /// margin to find all of them.
+    /// margin to find all contacts within it.
     ///
     /// The collider normalises the normals, and ignores contacts whose point, normal or depth is not finite.
     /// A particle that is inside and has no normal stays where it is.

@@ -46,7 +46,7 @@ using PreconditionHandler = void (*)(const char* sentence);
 /// Sets the handler for the whole program, for example one that logs or breaks into a debugger. Any thread
 /// may call this at any time.
 /// @param handler  null: the default
-/// @return the previous one; null: the default
+/// @return the previous handler; null: the default
 PreconditionHandler set_precondition_handler(PreconditionHandler handler) noexcept;
 
 } // namespace echinus

@@ -55,8 +55,8 @@ struct ExactMapOptions {
 /// Statistics of the build, stored with the map.
 struct ExactMapStatistics {
     std::uint32_t face_count = 0; ///< the number of the mesh's faces
-    /// Faces with two corners at one point of the lattice, which have no area there. They are used for
-    /// distances only.
+    /// Faces with two corners at one point of the lattice, which have no area there. They affect distances
+    /// and intersections with triangles, but not which points are inside.
     std::uint32_t dropped_faces = 0;
     /// The largest number of faces in a band. In that band contains() tests each of them, at 1 to 13 ns per
     /// face.
@@ -83,9 +83,10 @@ class ExactMap {
     /// (Jacobson et al. 2013). A gap in which that number stays away from every threshold (kCertainMargin)
     /// has one stored answer; everywhere else the number is computed for each particle, in about a
     /// microsecond
-    /// @throws Error InvalidMesh as inspect() does, or when the bounding radius lies outside [1e-15, 1e15];
-    /// InvalidOptions for divisions beyond kMaxDivisions, divisions together with a budget, or a budget that
-    /// the coarsest map exceeds
+    /// @throws Error InvalidMesh as inspect() does, or when the bounding radius lies outside [1e-15, 1e15],
+    /// no face is larger than a step of the lattice, or too many faces lie on each other; InvalidOptions for
+    /// divisions beyond kMaxDivisions, divisions together with a budget, or a budget that the coarsest map
+    /// exceeds
     static ExactMap build(const TriangleMesh& mesh, const ExactMapOptions& options = {});
 
     /// Makes a map from existing arrays. They belong to `storage`, which the map keeps alive. The file reader

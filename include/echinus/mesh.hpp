@@ -87,9 +87,9 @@ Sphere smallest_enclosing_sphere(std::span<const Vec3f> points);
 /// No repair opens a closed mesh.
 struct RepairOptions {
     /// Drops duplicate faces. Faces with the same three vertices and opposite orientations cancel in
-    /// pairs; the first of the remaining ones, which have the same orientation, stays. If that would leave
-    /// an edge less balanced, all remaining ones stay; if only the first face of all closes a hole, that
-    /// one stays. Nothing is dropped if no face would be left.
+    /// pairs; the first of the remaining ones, which have the same orientation, stays. If dropping the others
+    /// would leave an edge less balanced, all remaining ones stay; if only the first face of all closes a
+    /// hole, that one stays. Nothing is dropped if no face would be left.
     bool drop_duplicate_faces = false;
     /// If two pairs of faces fill the same quadrilateral of four edges, each along its own diagonal, and
     /// edges are better balanced without one of the pairs, drops that pair, or the later pair if both are

@@ -56,9 +56,9 @@ struct SolverStep {
 /// inside is moved to the nearest surface point. With distance maps and custom maps, particles are not swept,
 /// but pushed out if they end a step inside.
 ///
-/// Between steps the object remembers the surfaces around each particle, so that particles that hardly move
-/// need no query, and the last free position of each particle. Copies are independent. Different threads may
-/// use different objects at the same time, but only one thread may use an object at a time.
+/// Between steps the object remembers the last free position of each particle and the surfaces around it, so
+/// that a particle that hardly moves needs no query. Copies are independent. Different threads may use
+/// different objects at the same time, but only one thread may use an object at a time.
 class ParticleCollision {
   public:
     /// A particle counts as exploded if its position is not finite, or is farther than this many units from
@@ -68,8 +68,9 @@ class ParticleCollision {
     /// @param colliders  colliders with any kind of map, in their initial poses; their velocities are
     /// ignored, but must be finite
     /// @param thickness  the distance in units that particles keep from the surface, 0 to 1e9; the effective
-    ///                   value is at least 16 steps of the map's lattice (2^-19 of its radius). A particle
-    ///                   that is swept to a surface may be closer until the next step. See docs/thickness.md
+    ///                   value is at least 16 steps of the map's lattice, each 2^-19 of the map's radius. A
+    ///                   particle that is swept to a surface may be closer until the next step. See
+    ///                   docs/thickness.md
     /// @throws Error InvalidOptions
     ParticleCollision(std::vector<Collider> colliders, double thickness,
                       const ParticleCollisionOptions& options = {});

@@ -268,9 +268,9 @@ struct SimulationOptions {
     Vec3d gravity{0, 0, -9.81};  ///< units per second squared
     /// Distance in units that the deformable keeps from colliders. By default it is half the mean rest length
     /// of the structural constraints or, for soft bodies, half the mean edge length (docs/thickness.md).
-    /// Newton: at least a fiftieth of the mean edge length. Jakobsen: 0 is possible but slow, since particles
-    /// on the surface itself need a query in every relaxation; with this value one face in twenty intersects
-    /// the model.
+    /// Newton: the effective value is at least a fiftieth of the mean edge length, and at least 1e-6.
+    /// Jakobsen: 0 is possible but slow, since particles on the surface itself need a query in every
+    /// relaxation; with this value one face in twenty intersects the model.
     std::optional<double> thickness{};
     /// Coulomb's coefficient of friction; 0 is no friction. Jakobsen: the tangential motion relative to the
     /// collider is reduced by the coefficient times the length of the push-out, but at most to 0.
@@ -364,7 +364,7 @@ struct SimulationProfile {
     /// free, rescued and lost.
     std::uint64_t rescued_count = 0;
     /// Jakobsen: number of times that a particle was lost, that is, ended a frame no longer free of an exact
-    /// map of which it had once been free. It counts once for each such map, and again in each such frame. A
+    /// map of which it had once been free. A particle counts once for each such map in each such frame. A
     /// particle that began inside and has not been outside yet does not count.
     std::uint64_t lost_count = 0;
     /// If surfaces collide: number of times that the displacement of a particle in a frame or substep was

@@ -45,9 +45,9 @@ class SurfaceCollision {
     /// @param faces      the faces between the particles; at least one
     /// @param colliders  in their initial poses; their velocities are ignored, but must be finite
     /// @param thickness  the distance in units to keep from colliders, 0 to 1e9; the effective value is at
-    /// least a fiftieth of the mean edge length. Particles that begin closer are pushed off. See
-    /// docs/thickness.md
-    /// @throws Error InvalidOptions, naming intersecting faces; InvalidMesh
+    /// least a fiftieth of the mean edge length, and at least 1e-6. Particles that begin closer are pushed
+    /// off. See docs/thickness.md
+    /// @throws Error InvalidOptions, naming intersecting faces if there are any, or InvalidMesh
     SurfaceCollision(std::vector<Vec3f> positions, std::vector<Triangle> faces,
                      std::vector<Collider> colliders, double thickness,
                      const SurfaceCollisionOptions& options = {});

@@ -17,10 +17,11 @@ ECHINUS_EXPORT_BEGIN
 /// one, intersection tests, and sweeps. They do not need an inside, so open meshes work as well as closed
 /// ones.
 ///
-/// The surface is that of the map: the faces of the mesh with their vertices snapped to the map's lattice,
-/// which moves them by at most R / 2^20 along each axis, without faces that have no area there. Everything is
-/// in the map's frame; faces are numbered as in the mesh. A triangle with two equal corners is an edge, and
-/// one with three equal corners a point. A triangle with a corner that is not finite is far from all faces.
+/// The surface is that of the map: the faces of the mesh, with their vertices snapped to the map's lattice.
+/// Snapping moves a vertex by at most R / 2^20 along each axis; a face that has no area on the lattice counts
+/// as a segment or a point. Everything is in the map's frame; faces are numbered as in the mesh. A triangle
+/// with two equal corners is an edge, and one with three equal corners a point. A triangle with a corner that
+/// is not finite is far from all faces.
 ///
 /// Any number of threads may query one map. The answers are the same on every machine and for any number of
 /// threads.

@@ -100,10 +100,10 @@ struct Tetrahedralization {
 /// For an open model the generalised winding number decides what is inside (exact_map.hpp). The vertices are
 /// numbered along the model's longest axis. A million tetrahedra take about 1.5 s on one core; with a count,
 /// this includes all trials.
-/// @throws Error InvalidOptions when not exactly one of size and count is positive, a size is not finite,
-/// is smaller than 1/4096 of the model's largest coordinate, where float is too coarse, or would take more
+/// @throws Error InvalidOptions when not exactly one of size and count is positive, or a size is not finite,
+/// is smaller than 1/4096 of the model's largest coordinate (float is too coarse for it), or would take more
 /// tetrahedra or lattice vertices than allowed; InvalidMesh when no tetrahedron of that size fits into the
-/// model
+/// model, or no size gives about that count
 Tetrahedralization tetrahedralize(const ExactMapView& model, const TetrahedralizeOptions& options);
 
 // ---- Quality ----
