@@ -147,7 +147,7 @@ ECHINUS_API echinus_status echinus_mesh_read(const char* path, echinus_mesh** me
 /// @return ECHINUS_UNWRITABLE or ECHINUS_WRONG_FORMAT
 ECHINUS_API echinus_status echinus_mesh_write(const echinus_mesh* mesh, const char* path);
 
-/// Makes a torus about the z axis, centred at the origin like the other two shapes.
+/// Makes a torus about the z axis. It is centred at the origin, as are the next two shapes.
 /// @return ECHINUS_INVALID_OPTIONS unless 0 < minor_radius < major_radius, their sum is finite as a float,
 /// and both counts are at least 3
 ECHINUS_API echinus_status echinus_mesh_torus(double major_radius, double minor_radius,
@@ -185,7 +185,7 @@ typedef struct echinus_fault {
 } echinus_fault;
 
 /// The properties of a mesh. Vertices are distinguished by index, except that vertices of unbalanced edges
-/// count as one if they are at most 2^-21 of the radius apart. All maps do the same.
+/// count as one if they are at most 2^-21 of the radius apart. All maps treat vertices in the same way.
 typedef struct echinus_mesh_report {
     size_t size;
     uint64_t face_count;
@@ -493,7 +493,7 @@ ECHINUS_API echinus_status echinus_map_describe(const echinus_map* map, echinus_
 typedef struct echinus_exact_map_statistics {
     size_t size;
     uint32_t face_count;
-    uint32_t dropped_faces; ///< faces without area on the lattice, which are used for distances only
+    uint32_t dropped_faces; ///< faces without area on the lattice, which do not affect what is inside
     uint32_t longest_list;  ///< largest number of faces in a band
     float mean_list;
     float expected_tests; ///< expected number of faces that a query near the surface tests
@@ -615,7 +615,7 @@ typedef struct echinus_contact {
     float depth;     ///< distance to point: positive inside, negative outside
     uint32_t face;   ///< index in the mesh; ECHINUS_NONE if it is not known
     uint8_t inside;
-    uint8_t certain; ///< 0 where the mesh is open and its winding number is within 0.1 of the threshold
+    uint8_t certain; ///< 0 if the mesh is open and its winding number is within 0.1 of a threshold
     uint8_t feature; ///< an echinus_feature
 } echinus_contact;
 
@@ -626,8 +626,7 @@ ECHINUS_API echinus_status echinus_map_contains(const echinus_map* map, const fl
 
 /// Decides which points are inside, and whether that is certain.
 /// @param inside   [count] out
-/// @param certain  [count] out: 0 where the mesh is open and its winding number is within 0.1 of the
-/// threshold
+/// @param certain  [count] out: 0 if the mesh is open and its winding number is within 0.1 of a threshold
 ECHINUS_API echinus_status echinus_map_classify(const echinus_map* map, const float* points, size_t count,
                                                 size_t stride, uint32_t thread_count, uint8_t* inside,
                                                 uint8_t* certain);
@@ -793,7 +792,7 @@ typedef struct echinus_pose_key {
 ECHINUS_API echinus_status echinus_pose_at(const echinus_pose_key* keys, size_t key_count, double seconds,
                                            echinus_pose* pose);
 
-/// The vertices of a model over time, in equally spaced samples. It is immutable.
+/// The vertices of a model over time, in equally spaced samples. A cache is immutable.
 typedef struct echinus_vertex_cache echinus_vertex_cache;
 
 /// Copies the samples.
@@ -804,11 +803,13 @@ typedef struct echinus_vertex_cache echinus_vertex_cache;
 ECHINUS_API echinus_status echinus_vertex_cache_create(const float* samples, size_t sample_count,
                                                        size_t vertex_count, double start_time,
                                                        double sample_seconds, echinus_vertex_cache** cache);
-/// Reads a PC2 point cache, or a folder of OBJ files, one for each frame in the order of their names.
+/// Reads a PC2 point cache; a folder of OBJ files, one for each frame, in the order of their names; or the
+/// model's own glTF, GLB or 3DS file with one animation.
 /// @param mesh               the model, as returned by echinus_mesh_read()
 /// @param frames_per_second  positive
-/// @return as echinus_mesh_read(); ECHINUS_INVALID_MESH also if the number of vertices, or a face in a
-/// folder, differs from the model's
+/// @return as echinus_mesh_read(); ECHINUS_INVALID_MESH also if the number of vertices, or a face of a
+/// folder's mesh or of a file with an animation, differs from the model's, or the file does not have exactly
+/// one animation
 ECHINUS_API echinus_status echinus_vertex_cache_read(const char* path, const echinus_mesh* mesh,
                                                      double frames_per_second, echinus_vertex_cache** cache);
 ECHINUS_API void echinus_vertex_cache_destroy(echinus_vertex_cache* cache);
@@ -819,7 +820,7 @@ typedef struct echinus_vertex_cache_info {
     uint64_t vertex_count;
     double start_time;
     double sample_seconds;
-    const float* samples; ///< [3 vertex_count sample_count]; valid as long as the cache
+    const float* samples; ///< [3 vertex_count sample_count]; valid as long as the cache exists
 } echinus_vertex_cache_info;
 
 /// @param info  out; the caller sets its size
@@ -951,8 +952,8 @@ ECHINUS_API echinus_status echinus_tetrahedra_measure_distance(const echinus_tet
                                                                uint32_t thread_count,
                                                                echinus_boundary_distance* distance);
 
-/// The positions of points in a body, for instance of a finer mesh, so that they can follow it. It is
-/// immutable.
+/// The positions of points, for instance of a finer mesh, relative to a body, so that they can follow the
+/// body. An embedding is immutable.
 typedef struct echinus_embedding echinus_embedding;
 
 /// Finds the tetrahedron that contains each point, or else the nearest one, and the point's weights there.
@@ -1141,7 +1142,7 @@ ECHINUS_API echinus_status echinus_deformable_soft_body(const echinus_tetrahedra
 /// Combines several deformables into one, the particles of one part after those of the other. With
 /// ECHINUS_COLLISION_SURFACES_AND_SELF, they collide with each other.
 /// @param parts  [part_count]
-/// @return ECHINUS_INVALID_OPTIONS, naming the part, if a part refers to a particle that it does not have
+/// @return ECHINUS_INVALID_OPTIONS, naming the part, for a part that no simulation would accept
 ECHINUS_API echinus_status echinus_deformable_combine(const echinus_deformable* const* parts,
                                                       size_t part_count, echinus_deformable** deformable);
 
@@ -1156,7 +1157,7 @@ ECHINUS_API echinus_status echinus_deformable_with_masses_times(const echinus_de
 ECHINUS_API echinus_status echinus_deformable_passing_through(const echinus_deformable* deformable,
                                                               uint32_t collider, echinus_deformable** result);
 
-/// @param arrays  out; the caller sets its size; its pointers are valid as long as the deformable
+/// @param arrays  out; the caller sets its size; its pointers are valid as long as the deformable exists
 ECHINUS_API echinus_status echinus_deformable_read(const echinus_deformable* deformable,
                                                    echinus_deformable_arrays* arrays);
 
@@ -1308,7 +1309,7 @@ ECHINUS_API size_t echinus_simulation_particle_count(const echinus_simulation* s
 /// the simulation exists, and each step overwrites the values.
 ECHINUS_API const float* echinus_simulation_positions(const echinus_simulation* simulation);
 /// All arrays of the deformable in its present state.
-/// @param arrays  out; the caller sets its size; its pointers are valid as long as the simulation
+/// @param arrays  out; the caller sets its size; its pointers are valid as long as the simulation exists
 ECHINUS_API echinus_status echinus_simulation_read(const echinus_simulation* simulation,
                                                    echinus_deformable_arrays* arrays);
 
@@ -1356,7 +1357,7 @@ ECHINUS_API echinus_status echinus_simulation_read_options(const echinus_simulat
 
 ECHINUS_API size_t echinus_simulation_collider_count(const echinus_simulation* simulation);
 /// A collider in its present pose.
-/// @param collider  out; the caller sets its size; its map is valid as long as the simulation. For a
+/// @param collider  out; the caller sets its size; its map is valid as long as the simulation exists. For a
 /// deforming collider it is the map of the vertices at the time of the last call of this function
 ECHINUS_API echinus_status echinus_simulation_read_collider(const echinus_simulation* simulation,
                                                             size_t index, echinus_collider* collider);
