@@ -52,7 +52,7 @@ struct Collider {
     Vec3d scale{1, 1, 1};
     Vec3d linear_velocity{};  ///< velocity of the pose's translation, units per second
     Vec3d angular_velocity{}; ///< rotation about the pose's translation, in world axes, radians per second
-    std::string name{};       ///< for error messages; if empty, "collider" and its index
+    std::string name{};       ///< name in error messages; if empty, "collider" and its index
 
     bool moves() const { return linear_velocity != Vec3d{} || angular_velocity != Vec3d{}; }
 };
@@ -87,7 +87,7 @@ struct VertexCache {
     double sample_seconds = 1;                         ///< the time between samples; positive
     std::size_t vertex_count = 0;                      ///< the number of the model's vertices
     std::shared_ptr<const std::vector<Vec3f>> samples; ///< vertex_count positions each, local; at least one
-    std::string name{}; ///< for error messages, for instance the file's name; may be empty
+    std::string name{}; ///< name in error messages, for instance the file's; may be empty
 
     std::size_t sample_count() const { return vertex_count > 0 ? samples->size() / vertex_count : 0; }
     double end_time() const { return start_time + sample_seconds * static_cast<double>(sample_count() - 1); }

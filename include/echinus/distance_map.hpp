@@ -28,7 +28,7 @@ enum class VertexCorrection : std::uint8_t {
     None,  ///< entries are the exact crossings
     Paper, ///< the four samples around a vertex are increased by the missing distance, in every layer
     /// Entries of layers in which the ray leaves the solid are increased, and those of layers in which it
-    /// enters are decreased, so that both errors enlarge the solid.
+    /// enters are decreased, so that both corrections enlarge the solid.
     Signed,
 };
 
@@ -75,7 +75,7 @@ struct DistanceMapStatistics {
     std::uint32_t corrected_entries = 0; ///< entries moved by the vertex correction
     std::uint32_t clamped_entries = 0;   ///< corrections cut short at 0, R or a neighbouring entry
     /// Share of directions whose number of entries has the wrong parity for the centre, because of holes that
-    /// can be seen from there. It is 0 for a closed mesh.
+    /// can be seen from the centre. It is 0 for a closed mesh.
     float wrong_parity_share = 0;
 };
 

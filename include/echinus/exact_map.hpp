@@ -66,9 +66,9 @@ struct ExactMapStatistics {
     /// the surface tests (the mean over bands, weighted by their numbers of faces). It is about 10 for most
     /// meshes with default options, and hundreds or thousands where the size of the map is limited.
     float expected_tests = 0;
-    /// Share of the bounding sphere's volume in which the map stores the answer, which is certain. Elsewhere
-    /// the winding number is computed for each point; the answer may be certain there as well (Containment).
-    /// It is 1 for a closed mesh.
+    /// Share of the bounding sphere's volume in which the map stores the answer; there it is certain.
+    /// Elsewhere the winding number is computed for each point; the answer may be certain there as well
+    /// (Containment). It is 1 for a closed mesh.
     float certain_share = 1;
     /// Share of directions, by solid angle, along which the winding number must be computed somewhere.
     float uncertain_directions = 0;
@@ -156,8 +156,8 @@ void classify_batch(const ExactMapView& map, StridedSpan<const Vec3f> points_loc
 
 /// The winding number of the surface around a point: the signed number of times that the surface surrounds
 /// it. It is an integer for a closed surface, and otherwise the generalised winding number (Jacobson et al.
-/// 2013), whose distance from one half shows how much holes and gaps matter. contains() rounds it: a point is
-/// inside if the absolute value exceeds one half (InsideRule::Nonzero).
+/// 2013): the nearer it is to one half, the more holes and gaps matter. contains() rounds the number: a point
+/// is inside if the absolute value exceeds one half (InsideRule::Nonzero).
 ///
 /// The result is NaN for a point with NaN, and otherwise 0 for a point with infinity. The query does not
 /// allocate. For an open surface it traverses a tree (Barill et al. 2018) of caps that close the holes, or of
@@ -221,7 +221,8 @@ void contacts_batch(const ExactMapView& map, StridedSpan<const Vec3f> points_loc
                     std::span<Contact> contacts, unsigned thread_count = 1) noexcept;
 
 /// The signed distance of a point from the surface, in the mesh's unit: negative inside, positive outside, as
-/// in most signed distance fields. That is the opposite of Contact::depth, which is positive inside.
+/// in most signed distance fields. The sign is the opposite of that of Contact::depth, which is positive
+/// inside.
 ///
 /// The function works for every point, however far away. The value is that of contact() with an infinite
 /// margin, so it is exact for the snapped mesh, except for rounding to float, and differs from the distance
@@ -235,7 +236,8 @@ void contacts_batch(const ExactMapView& map, StridedSpan<const Vec3f> points_loc
 /// @param gradient  out, unless null: the unit vector along which the distance grows fastest. It points from
 /// the nearest surface point to a query point outside, and from a query point inside to the nearest surface
 /// point. Within two lattice steps of the surface it is the pseudonormal (see contact()). If several surface
-/// points are nearest (on the medial axis), it belongs to the one whose face comes first in the map's order
+/// points are nearest (on the medial axis), the gradient belongs to the point whose face comes first in the
+/// map's order
 float signed_distance(const ExactMapView& map, Vec3f point_local, Vec3f* gradient = nullptr) noexcept;
 
 /// signed_distance() for many points, with the same answers, bit for bit, at the cost of contacts_batch()
@@ -317,8 +319,8 @@ class ExactMapBuilder {
 struct ExactMapSurface {
     TriangleMesh mesh; ///< local frame
     /// [face_count] For each face the length of the longest list that contains it: the largest number of
-    /// faces that a query near it may have to test. It is 0 for a face in no list, which is seen edge-on from
-    /// the centre.
+    /// faces that a query near it may have to test. It is 0 for a face in no list: one that is seen edge-on
+    /// from the centre.
     std::vector<std::uint32_t> longest_list;
 };
 ExactMapSurface reconstruct_surface(const ExactMapView& map);

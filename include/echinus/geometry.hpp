@@ -90,7 +90,7 @@ struct Rotation {
     static Rotation about(const Vec3d& axis, double angle_rad);
 
     Vec3d apply(const Vec3d& v) const;
-    /// The rotation vector, which points along the axis and whose length is the angle in radians, at most pi:
+    /// The rotation vector: it points along the axis, and its length is the angle in radians, at most pi.
     /// about(vector, length(vector)) is the same rotation. It is 0 for the identity. The result is
     /// bit-identical on every machine.
     Vec3d vector() const;

@@ -101,8 +101,8 @@ struct RepairOptions {
     /// only in vertices or edges count as separate components here.
     bool flip_inside_out = false;
     /// Closes seams: joins vertices of unbalanced edges that are at most weld_distance apart, drops faces
-    /// that then have two equal corners, and fills holes that are no wider, such as those along an edge that
-    /// is subdivided only by the faces on one side. Nothing is joined if no face would be left.
+    /// that then have two equal corners, and fills holes that are at most as wide, such as the holes along an
+    /// edge that is subdivided only by the faces on one side. Nothing is joined if no face would be left.
     bool close_seams = false;
     /// The width of seams in the mesh's unit, at most R, the radius of the bounding sphere. The effective
     /// value is at least 2^-21 R = 4.8e-7 R, a quarter of a map's lattice step, within which maps join
@@ -160,7 +160,7 @@ struct RepairReport {
     std::size_t holes_left = 0; ///< larger holes, or rims of sheets; 0 unless holes were to be closed
     std::vector<std::uint32_t> inner_faces_dropped;
     std::size_t sheets_thickened = 0;           ///< pieces of surface between rims
-    std::size_t faces_added = 0;                ///< to fill seams, to close holes and to thicken sheets
+    std::size_t faces_added = 0;                ///< faces that fill seams, close holes or thicken sheets
     std::size_t vertices_welded = 0;            ///< vertices that were replaced by others in all faces
     std::vector<std::uint32_t> slivers_dropped; ///< loose slivers, and faces that lost their area by welding
     std::size_t faces_turned = 0;               ///< faces flipped so that neighbours agree

@@ -50,9 +50,9 @@ struct MeshAndEdges {
     std::vector<std::array<std::uint32_t, 2>> edges; ///< vertex indices, in the order of the file
 };
 
-/// Reads a mesh like read_mesh(), together with the lines of the file: those of an OBJ (`l`), where a line of
-/// k corners gives k - 1 edges, and polygons of two corners in the other formats. Vertices that only lines
-/// use are kept.
+/// Reads a mesh like read_mesh(), together with the lines of the file: in an OBJ the elements `l`, each of
+/// which gives k - 1 edges for k corners, and in the other formats polygons of two corners. Vertices that
+/// only lines use are kept.
 /// @throws Error as read_mesh() does, but InvalidMesh for a lack of faces only if there are no lines either
 MeshAndEdges read_mesh_and_edges(const std::filesystem::path& path);
 

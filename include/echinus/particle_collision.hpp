@@ -29,9 +29,9 @@ struct ParticleCollisionOptions {
 
 /// The particles of a solver after one of its steps, in world units and axes. The arrays must not overlap.
 struct SolverStep {
-    std::span<const Vec3f> previous_positions; ///< [n] at the start of the step
+    std::span<const Vec3f> previous_positions; ///< [n] positions at the start of the step
     std::span<Vec3f> positions;                ///< [n] in: the solver's positions; out: corrected positions
-    std::span<Vec3f> velocities{};             ///< [n] in and out, units per second; or empty
+    std::span<Vec3f> velocities{};             ///< [n] in and out: velocities, units per second; or empty
     /// [n] 1 / mass, in any unit; 0 for a pinned particle, which no collider pushes. If empty, all particles
     /// are pushed.
     std::span<const float> inverse_masses{};
@@ -90,7 +90,7 @@ class ParticleCollision {
     /// collision starts afresh in the next step. Preconditions and errors are those of set_collider_pose().
     void place_collider(std::size_t collider_index, const RigidTransform& pose);
 
-    /// Sets the friction of one collider, which overrides that of the options.
+    /// Sets the friction of one collider, in place of the friction in the options.
     /// @pre collider_index < colliders().size()
     /// @throws Error InvalidOptions for a friction out of range
     void set_collider_friction(std::size_t collider_index, double friction);

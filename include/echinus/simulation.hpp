@@ -83,7 +83,7 @@ struct Deformable {
     /// The distance constraints, in the order in which Jakobsen relaxes them. Newton uses only the structural
     /// constraints of threads, which run along no edge of a face.
     std::vector<DistanceConstraint> constraints;
-    std::vector<Triangle> faces;           ///< for Newton's cloth, rendering, wind and surface collision
+    std::vector<Triangle> faces;           ///< used by Newton's cloth, rendering, wind and surface collision
     std::vector<Attachment> attachments{}; ///< attachments of pinned particles, at most one for each
     /// The elements of soft bodies. A particle of an element that belongs to no face is an interior particle
     /// and does not collide.
@@ -172,13 +172,13 @@ Deformable make_cloth(const TriangleMesh& mesh, const MeshClothOptions& options)
 /// in one frame of 1/240 s, and a particle that contacts and constraints push slightly back and forth keeps
 /// trembling at about this speed.
 struct RestCondition {
-    double distance = 0.001;        ///< units
-    double speed = 0.1;             ///< units per second, at the end of a frame; may be infinite
-    std::uint32_t frame_count = 60; ///< at least 1
+    double distance = 0.001; ///< largest distance from one position, units
+    double speed = 0.1;      ///< largest speed at the end of a frame, units per second; may be infinite
+    std::uint32_t frame_count = 60; ///< number of frames in a row; at least 1
 };
 
-/// The material of cloth, for NewtonOptions. The defaults are those of a cotton, in SI units. Faces of
-/// tetrahedra are not cloth: bodies have their own material.
+/// The material of cloth, for NewtonOptions. The defaults describe a cotton, in SI units. Faces of tetrahedra
+/// are not cloth: bodies have their own material.
 struct ClothMaterial {
     double density = 0.2;            ///< mass per area, kg/m^2; positive
     double stretch_stiffness = 1000; ///< force per width along warp and weft, N/m; positive. A thread is as
@@ -252,8 +252,8 @@ struct JakobsenOptions {
     /// Share of a constraint's error that one relaxation removes, by ConstraintKind. 1 removes all of it; a
     /// value between 1 and 2 overshoots, which propagates tension farther per relaxation.
     std::array<double, kConstraintKindCount> stiffness{1, 1, 0.3};
-    /// If false, no particle is rescued; those that cross the surface of an exact map are counted as lost and
-    /// stay there. This serves only to demonstrate the effect of the proof at the end of a frame.
+    /// If false, no particle is rescued; a particle that crosses the surface of an exact map counts as lost
+    /// and stays there. This serves only to demonstrate the effect of the proof at the end of a frame.
     bool keep_free = true;
 
     bool operator==(const JakobsenOptions&) const = default;
@@ -290,7 +290,7 @@ struct SimulationOptions {
     unsigned thread_count = 1;
     /// The wind in every frame for which blow() is not called, given by the arguments of blow(). A rate of 0
     /// means no air; the wind must then be 0, too.
-    Vec3d wind{};         ///< units per second
+    Vec3d wind{};         ///< velocity of the air, units per second
     double wind_rate = 0; ///< per second
 
     SolverKind kind() const { return static_cast<SolverKind>(solver.index()); }
@@ -329,13 +329,13 @@ struct SolverChoice {
 /// A force and a torque on a collider, in world axes.
 struct Load {
     Vec3d force;  ///< N
-    Vec3d torque; ///< N m, about the pose's translation, which moves
+    Vec3d torque; ///< N m, about the pose's translation, which moves with the collider
 };
 
 /// A contact that exerted a force in the last frame, between a particle, edge or face of the deformable and a
 /// collider, or between two elements of the deformable.
 struct ContactPoint {
-    Vec3d position; ///< on the deformable, when the contact last exerted a force; world coordinates
+    Vec3d position; ///< position on the deformable when the contact last exerted a force; world frame
     Vec3d normal; ///< unit; points towards the deformable or, in self-collision, towards the first of the two
                   ///< elements in contact
     double gap;   ///< the distance when the contact last exerted a force; positive
@@ -536,8 +536,8 @@ class Simulation {
     /// nothing has changed
     void set_collider_vertices(std::size_t collider_index, std::span<const Vec3f> vertices_local);
 
-    /// Makes each frame move the vertices to those that vertices_at() returns for the end of the frame. The
-    /// simulation is not at rest before the last sample.
+    /// Makes each frame move the vertices to the positions that vertices_at() returns for the end of the
+    /// frame. The simulation is not at rest before the last sample.
     /// @throws Error InvalidOptions for a cache with a different number of vertices, without a sample, or
     /// with times or positions that are not finite; and as set_collider_vertices() does
     void set_collider_cache(std::size_t collider_index, VertexCache cache);
@@ -586,9 +586,9 @@ class Simulation {
     /// @throws Error Unwritable
     void save_state(const std::filesystem::path& path) const;
 
-    /// Restores a saved state: the following frames are bit-identical to those that followed when it was
-    /// saved. The simulation must have been made from the same deformable, colliders in their initial poses,
-    /// and options; a collider that followed a vertex cache must already follow the same cache. Poses,
+    /// Restores a saved state: the following frames are bit-identical to the frames that followed the call of
+    /// save_state(). The simulation must have been made from the same deformable, colliders in their initial
+    /// poses, and options; a collider that followed a vertex cache must already follow the same cache. Poses,
     /// velocities and keyframes come from the state. A custom map is not compared. The times in profile() are
     /// not restored.
     ///

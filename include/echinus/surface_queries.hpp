@@ -106,8 +106,8 @@ struct FaceLists {
     }
 };
 
-/// Finds the faces within reach of each triangle: all faces whose distance is at most `reach`, and, except
-/// for rounding (see Clearance), hardly any that are farther away.
+/// Finds the faces within reach of each triangle: all faces whose distance is at most `reach`, and possibly
+/// faces that are farther away by no more than rounding errors (see Clearance).
 /// @param vertices_local  [vertex_count]
 /// @param triangles       [n] indices of vertices
 /// @param reach           not negative; 0: only touching faces. Limited to 10^12 R

@@ -91,7 +91,7 @@ struct Tetrahedralization {
 /// All tetrahedra are positive. Their dihedral angles depend only on which vertices of the lattice are inside
 /// and where its edges are cut; the extremes over all cases, and so for every model, are 9.3 and 161.7
 /// degrees (docs/tetrahedra.md). The boundary is closed, manifold and does not intersect itself. Its vertices
-/// lie on the model's surface, up to rounding and two lattice steps of the map, except for those where
+/// lie on the model's surface, up to rounding and two lattice steps of the map, except for vertices at which
 /// tetrahedra were removed. Between the vertices it may deviate by about half a size where the model has
 /// edges or features finer than the lattice; parts that are closer together than a size may merge. The volume
 /// is therefore usually less than the model's, by a share that decreases with the square of the size once all

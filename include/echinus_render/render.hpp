@@ -63,7 +63,7 @@ inline constexpr Colour kScale[] = {
 struct RenderedObject {
     TriangleMesh mesh; ///< world frame, any unit
     Colour colour = palette::kClay;
-    std::vector<Colour> face_colours;        ///< [face_count] in place of `colour`, or empty
+    std::vector<Colour> face_colours;        ///< [face_count] colours in place of `colour`, or empty
     std::optional<Colour> back_colour;       ///< the clockwise side of faces; by default the front's colour
     std::vector<std::uint32_t> marked_faces; ///< faces drawn in palette::kMark on both sides
     /// Edges look smooth if the angle between their faces is smaller than this, and sharp otherwise. With 0
@@ -80,7 +80,7 @@ struct View {
     /// up = y and +y for up = x.
     double azimuth_deg = 35;
     double elevation_deg = 20;      ///< angle above the horizon, in [-89, 89]
-    double vertical_field_deg = 24; ///< in [1, 120]; smaller is more like a parallel projection
+    double vertical_field_deg = 24; ///< field of view, [1, 120]; a small one is nearly a parallel projection
     double margin = 0.07;           ///< empty border, as a share of the picture's height, in [0, 0.35]
     double footer = 0;              ///< extra room below for a caption: a share of the height, in [0, 0.25]
 };
@@ -171,8 +171,8 @@ Image arrange(std::span<const Image> pictures, std::uint32_t column_count);
 Image draw_map_figure(const TriangleMesh& model, const DistanceMapView& map, const View& view,
                       const RenderOptions& options = {});
 
-/// Draws the model, and next to it the mesh of an exact map, each of whose faces is coloured by the length of
-/// the longest list that contains it: the number of faces that a query near it may have to test.
+/// Draws the model, and next to it the mesh of an exact map. Each face is coloured by the length of the
+/// longest list that contains it: the number of faces that a query near it may have to test.
 /// @param options  width is that of the whole figure
 /// @throws Error as camera_for() and render()
 Image draw_map_figure(const TriangleMesh& model, const ExactMapView& map, const View& view,

@@ -27,7 +27,7 @@ ECHINUS_EXPORT_BEGIN
 namespace echinus {
 
 struct ModelFile {
-    std::string name; ///< as written in the scene, for instance "horse.3ds"; see find_model()
+    std::string name; ///< the file's name as written in the scene, for instance "horse.3ds"; see find_model()
 };
 struct TorusModel { ///< arguments of make_torus()
     double major_radius = 1, minor_radius = 0.4;
@@ -62,14 +62,14 @@ struct SceneAttachment {
 /// The arguments of a Handle: vertices, or particles of a sheet, that are moved along a path and released.
 struct SceneHandle {
     VertexChoice vertices;
-    std::vector<PoseKey> keyframes; ///< if empty, the handle does not move
-    std::optional<double> release;  ///< seconds; without it the particles are not released
+    std::vector<PoseKey> keyframes; ///< the path; if empty, the handle does not move
+    std::optional<double> release;  ///< time in seconds; without it the particles are not released
 };
 
 /// The initial velocity of all particles that are not pinned, in the world.
 struct SceneVelocity {
-    Vec3d linear;  ///< units per second
-    Vec3d angular; ///< radians per second, about the particles' centre of mass
+    Vec3d linear;  ///< velocity of the centre of mass, units per second
+    Vec3d angular; ///< rotation about the centre of mass of these particles, radians per second
 };
 
 /// A cloth of any shape: the arguments of make_cloth() for a mesh, by name.
@@ -86,7 +86,7 @@ struct SceneBody {
     /// A closed surface, which is filled with tetrahedra; or a file of tetrahedra, for read_tetrahedra().
     SceneModel mesh;
     double element = 0;      ///< approximate size of tetrahedra, units; 0 for a file of tetrahedra
-    SoftBodyOptions options; ///< without pins and attachments
+    SoftBodyOptions options; ///< their pins and attachments are ignored
     VertexChoice pins;
     std::vector<SceneAttachment> attachments;
     std::vector<SceneHandle> handles;
@@ -99,12 +99,12 @@ struct SceneBody {
 struct ClothMeshes {
     TriangleMesh mesh, rest_mesh;
     std::vector<std::array<std::uint32_t, 2>> threads{}; ///< the threads of `mesh`: see read_mesh_and_edges()
-    std::vector<TetrahedralMesh> bodies{};               ///< one for each body; surfaces are already filled
+    std::vector<TetrahedralMesh> bodies{}; ///< one for each body; the caller has filled surfaces
 };
 
 /// The vertex cache of a deforming model: a file or a folder for read_vertex_cache().
 struct CacheFile {
-    std::string name; ///< as written in the scene; see find_model()
+    std::string name; ///< the name as written in the scene; see find_model()
     double frames_per_second = 24;
     std::string animation = {}; ///< the animation's name; empty if the file has one animation or none
 };
