@@ -266,7 +266,7 @@ typedef struct echinus_repair_report {
     uint64_t holes_left;   ///< holes with more edges, or rims of sheets; 0 unless holes were to be closed
     uint64_t inner_faces_dropped;
     uint64_t sheets_thickened;
-    uint64_t faces_added;     ///< to fill seams, to close holes and to thicken sheets
+    uint64_t faces_added;     ///< faces that fill seams, close holes or thicken sheets
     uint64_t vertices_welded; ///< vertices that were replaced by others in all faces
     uint64_t slivers_dropped; ///< loose slivers, and faces that lost their area by welding
     uint64_t faces_turned;    ///< faces flipped so that neighbours agree
@@ -314,9 +314,9 @@ typedef struct echinus_intersection_curve {
 /// Finds the intersecting faces and the curves along which they cross. Coplanar faces, faces without area and
 /// faces that touch in a point have no curve.
 /// @param b       in the frame of a; or NULL for a itself
-/// @param pairs   out, uint32_t[2], as above; or NULL
+/// @param pairs   out, uint32_t[2], as the functions above return them; or NULL
 /// @param curves  out, echinus_intersection_curve
-/// @param points  out, float[3], local: those of the first curve, then of the next
+/// @param points  out, float[3], local: the points of the first curve, then those of the next
 /// @return ECHINUS_INVALID_MESH for more than 2^25 pairs
 ECHINUS_API echinus_status echinus_mesh_intersections(const echinus_mesh* a, const echinus_mesh* b,
                                                       echinus_array** pairs, echinus_array** curves,
@@ -479,10 +479,10 @@ ECHINUS_API void echinus_map_destroy(echinus_map* map);
 typedef struct echinus_map_info {
     size_t size;
     echinus_map_kind kind;
-    float centre[3];      ///< where the rays start, local; 0 for a custom map, like all following members
-    float radius;         ///< every vertex of the mesh lies within it
-    uint32_t face_count;  ///< of the mesh
-    uint64_t byte_count;  ///< of all data that queries read
+    float centre[3]; ///< the start of the rays, local; this and all further members are 0 for a custom map
+    float radius;    ///< every vertex of the mesh is within this distance of the centre
+    uint32_t face_count;  ///< number of faces of the mesh
+    uint64_t byte_count;  ///< size of all data that queries read
     uint64_t source_hash; ///< identifies the mesh and the options that the map was built from
     double origin[3];     ///< the origin of the local frame in the frame of the mesh's file
 } echinus_map_info;
@@ -650,8 +650,8 @@ ECHINUS_API echinus_status echinus_map_signed_distance(const echinus_map* map, c
 
 /// Winding numbers of the surface around points: integers for a closed surface, otherwise generalised winding
 /// numbers. Only exact maps support this. A point with NaN gives NaN, and a point with infinity gives 0.
-/// @param tolerance        the largest error of the result, which is never on the wrong side of an odd
-/// multiple of one half; not negative, and 0 counts as 1e-8
+/// @param tolerance        the largest error of the result; the result is never on the wrong side of an odd
+/// multiple of one half. Not negative; 0 counts as 1e-8
 /// @param winding_numbers  [count] out
 ECHINUS_API echinus_status echinus_map_winding_number(const echinus_map* map, const float* points,
                                                       size_t count, size_t stride, float tolerance,
@@ -701,7 +701,7 @@ typedef struct echinus_triangle_sweep_hit {
     uint32_t face;  ///< the face that it reaches; ECHINUS_NONE if it meets none
 } echinus_triangle_sweep_hit;
 
-/// Sweeps triangles whose corners move along straight lines until they reach the surface. Paths that begin or
+/// Moves triangles, whose corners follow straight lines, until they reach the surface. Paths that begin or
 /// end farther than 10^11 radii from the map's centre are ignored: they meet nothing.
 /// @param hits  [count] out
 ECHINUS_API echinus_status echinus_map_sweep_triangles(const echinus_map* map, const float* from,
@@ -1022,9 +1022,10 @@ typedef struct echinus_deformable_arrays {
     size_t size;
     size_t particle_count;
     const float* positions;      ///< [3 particle_count]
-    const float* velocities;     ///< [3 particle_count] units per second; NULL: at rest
+    const float* velocities;     ///< [3 particle_count] units per second; NULL: all are at rest
     const float* inverse_masses; ///< [particle_count] 0 for a pinned particle; NULL means 1 for all
-    /// The distance constraints in the order of relaxation; Newton uses only structural ones of threads
+    /// The distance constraints in the order of relaxation; Newton uses only the structural constraints of
+    /// threads
     const echinus_distance_constraint* constraints;
     size_t constraint_count;
     const uint32_t* faces; ///< [3 face_count]
@@ -1131,15 +1132,14 @@ typedef struct echinus_soft_body_options {
 ECHINUS_API void echinus_soft_body_options_init(echinus_soft_body_options* options, size_t size);
 // End of options.
 
-/// Makes a body at rest, whose particles are the vertices of the tetrahedra and whose faces are their
-/// boundary.
+/// Makes a body at rest. Its particles are the vertices of the tetrahedra, and its faces are their boundary.
 /// @param options  or NULL for the defaults
-/// @return ECHINUS_INVALID_MESH when no tetrahedron uses a vertex; ECHINUS_INVALID_OPTIONS
+/// @return ECHINUS_INVALID_OPTIONS, or ECHINUS_INVALID_MESH if a vertex belongs to no tetrahedron
 ECHINUS_API echinus_status echinus_deformable_soft_body(const echinus_tetrahedra* body,
                                                         const echinus_soft_body_options* options,
                                                         echinus_deformable** deformable);
 
-/// Combines several deformables into one, the particles of one part after those of the other. With
+/// Combines several deformables into one. The particles of the parts follow each other in order. With
 /// ECHINUS_COLLISION_SURFACES_AND_SELF, they collide with each other.
 /// @param parts  [part_count]
 /// @return ECHINUS_INVALID_OPTIONS, naming the part, for a part that no simulation would accept
@@ -1393,8 +1393,8 @@ ECHINUS_API echinus_status echinus_simulation_set_collider_vertices(echinus_simu
                                                                     size_t vertex_count,
                                                                     size_t vertex_stride);
 
-/// Each frame moves the vertices of a collider to those of echinus_vertex_cache_at() at the frame's end. The
-/// cache may be destroyed afterwards.
+/// Each frame moves the vertices of a collider to the positions that echinus_vertex_cache_at() returns for
+/// the frame's end. The cache may be destroyed afterwards.
 /// @return as echinus_simulation_set_collider_vertices()
 ECHINUS_API echinus_status echinus_simulation_set_collider_cache(echinus_simulation* simulation, size_t index,
                                                                  const echinus_vertex_cache* cache);
@@ -1417,7 +1417,7 @@ ECHINUS_API echinus_status echinus_simulation_set_collider_free(echinus_simulati
 /// A contact of the last frame, between a particle, edge or face of the deformable and a
 /// collider, or between two elements of the deformable.
 typedef struct echinus_contact_point {
-    double position[3]; ///< on the deformable, when the contact last exerted a force; world coordinates
+    double position[3]; ///< position on the deformable when the contact last exerted a force; world frame
     double normal[3]; ///< unit; points towards the deformable or, in self-collision, towards the first of the
                       ///< two elements in contact
     double gap;       ///< the distance when the contact last exerted a force; positive
@@ -1494,7 +1494,7 @@ ECHINUS_API echinus_status echinus_particle_collision_set_collider_pose(echinus_
 ECHINUS_API echinus_status echinus_particle_collision_place_collider(echinus_particle_collision* collision,
                                                                      size_t index, const echinus_pose* pose);
 
-/// Sets the friction of one collider, which overrides that of the options.
+/// Sets the friction of one collider, in place of the friction in the options.
 ECHINUS_API echinus_status echinus_particle_collision_set_collider_friction(
     echinus_particle_collision* collision, size_t index, double friction);
 
