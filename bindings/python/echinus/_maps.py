@@ -78,7 +78,9 @@ class Contacts(_Answers):
 
     @property
     def certain(self) -> NDArray[np.bool_]:
-        """(...) False if the mesh is open and its generalised winding number is within 0.1 of one half."""
+        """(...) With an exact map, false for a point with NaN, and if the mesh is open and its generalised winding
+        number is within 0.1 of a threshold between inside and outside, such as one half. Always true with a distance
+        map."""
         return self._field("certain", np.bool_)
 
     @property

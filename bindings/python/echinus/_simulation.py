@@ -77,7 +77,8 @@ class SimulationProfile:
         Number of times that a particle that had once been free of an exact map ended a frame inside it or on the other
         side of its surface.
     truncated_count
-        With surface collision: number of times that the displacement of a particle was cut short to avoid a contact.
+        With surface collision: number of times that the displacement of a particle was truncated, because an edge or
+        face of the particle could have met a surface on the path.
     measured_pair_count
         With surface collision: number of pairs whose distance was measured.
     unresolved_count
