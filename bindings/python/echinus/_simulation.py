@@ -439,8 +439,8 @@ class Simulation:
         """Makes a model follow keyframes: each frame moves it to the pose that :func:`pose_at` returns for the frame's
         end.
 
-        The model starts from its present pose, so first place it where the keyframes have it now. Without keys it does
-        not move.
+        The model starts from its present pose, so first place it at the pose of the keyframes at the present time.
+        Without keys it does not move.
 
         Parameters
         ----------
