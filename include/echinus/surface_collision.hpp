@@ -47,7 +47,8 @@ class SurfaceCollision {
     /// @param thickness  the distance in units to keep from colliders, 0 to 1e9; the effective value is at
     /// least a fiftieth of the mean edge length, and at least 1e-6. Particles that begin closer are pushed
     /// off. See docs/thickness.md
-    /// @throws Error InvalidOptions, naming intersecting faces if there are any, or InvalidMesh
+    /// @throws Error InvalidOptions, naming intersecting faces if there are any; InvalidMesh if so many faces
+    /// intersect that intersecting_pairs() refuses to list them
     SurfaceCollision(std::vector<Vec3f> positions, std::vector<Triangle> faces,
                      std::vector<Collider> colliders, double thickness,
                      const SurfaceCollisionOptions& options = {});
