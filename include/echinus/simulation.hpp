@@ -542,11 +542,11 @@ class Simulation {
     /// with times or positions that are not finite; and as set_collider_vertices() does
     void set_collider_cache(std::size_t collider_index, VertexCache cache);
 
-    /// Newton: the force and torque that the deformable exerted on a collider in the last frame by contact
-    /// and friction, averaged over the frame. It is 0 before the first frame, and always with Jakobsen. A
-    /// program with rigid bodies of its own should let step() move them, by set_collider_free()
-    /// (examples/08_load): a program that applies the load of the previous frame to them is stable only with
-    /// small steps.
+    /// Newton: the force and torque that the deformable exerted on a collider in the last frame by contact,
+    /// friction and attached particles, averaged over the frame. It is 0 before the first frame, and always
+    /// with Jakobsen. A program with rigid bodies of its own should let step() move them, by
+    /// set_collider_free() (examples/08_load): a program that applies the load of the previous frame to them
+    /// is stable only with small steps.
     /// @pre collider_index < colliders().size()
     Load load_on(std::size_t collider_index) const;
 

@@ -175,7 +175,8 @@ class Simulation:
         Viscosity of the cloth divided by its stiffness (0 to 1e6 s).
     newton_tolerance
         ``newton`` only: tolerance of Newton's method, relative to the mean edge length. It has converged if the
-        decrease of the energy corresponds to a root-mean-square displacement of at most this length (0 to 1).
+        decrease of the energy corresponds to a root-mean-square displacement of at most the tolerance times that
+        length (0 to 1).
     air_drag
         ``newton`` only: resistance of still air, the rate at which the velocity of a free particle decays; 0 is a
         vacuum (0 to 1e6 1/s).

@@ -751,7 +751,8 @@ export interface SceneDescription {
     thread_count?: number;
     /**
      * `newton` only: tolerance of Newton's method, relative to the mean edge length. It has converged if the decrease
-     * of the energy corresponds to a root-mean-square displacement of at most this length (0 to 1). Default: 0.0005.
+     * of the energy corresponds to a root-mean-square displacement of at most the tolerance times that length (0 to 1).
+     * Default: 0.0005.
      */
     newton_tolerance?: number;
     /** Velocity of the air; needs `wind_rate` (-1e9 to 1e9 length/s). Default: `[0, 0, 0]`. */

@@ -1249,7 +1249,8 @@ typedef struct echinus_simulation_options {
     /// Viscosity of the cloth divided by its stiffness (0 to 1e6 s)
     double damping;
     /// Newton only: tolerance of Newton's method, relative to the mean edge length. It has converged if the
-    /// decrease of the energy corresponds to a root-mean-square displacement of at most this length (0 to 1)
+    /// decrease of the energy corresponds to a root-mean-square displacement of at most the tolerance times
+    /// that length (0 to 1)
     double newton_tolerance;
     /// Newton only: resistance of still air, the rate at which the velocity of a free particle decays; 0 is a
     /// vacuum (0 to 1e6 1/s)
@@ -1399,8 +1400,8 @@ ECHINUS_API echinus_status echinus_simulation_set_collider_vertices(echinus_simu
 ECHINUS_API echinus_status echinus_simulation_set_collider_cache(echinus_simulation* simulation, size_t index,
                                                                  const echinus_vertex_cache* cache);
 
-/// The load that the deformable exerted on a collider in the last frame by contact and friction, averaged
-/// over the frame; 0 before the first frame, and always with ECHINUS_SOLVER_JAKOBSEN.
+/// The load that the deformable exerted on a collider in the last frame by contact, friction and attached
+/// particles, averaged over the frame; 0 before the first frame, and always with ECHINUS_SOLVER_JAKOBSEN.
 /// @param force   [3] out, N
 /// @param torque  [3] out, N m, about the pose's translation, as it moves
 ECHINUS_API echinus_status echinus_simulation_load_on(const echinus_simulation* simulation, size_t index,
