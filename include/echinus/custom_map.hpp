@@ -35,7 +35,8 @@ class CustomMap {
     /// margin to find all contacts within it.
     ///
     /// The collider normalises the normals, and ignores contacts whose point, normal or depth is not finite.
-    /// A particle that is inside and has no normal stays where it is.
+    /// If the contact of a particle that is inside has the normal 0 and the particle's own position as
+    /// `point`, the particle is not pushed: it moves as if there were no collider.
     /// @param points_local  [n]
     /// @param margin        not negative, finite
     /// @param contacts      [n] out, as Contact describes; every element must be written

@@ -178,9 +178,9 @@ void winding_number_batch(const ExactMapView& map, StridedSpan<const Vec3f> poin
                           std::span<float> windings, float tolerance = 1e-2F,
                           unsigned thread_count = 1) noexcept;
 
-/// Finds whether the particle is inside, the nearest point of the whole surface and its distance: the global
-/// minimum, by a branch-and-bound search. Where parts overlap or are nested, the nearest point may lie inside
-/// the solid, since faces that do not bound the solid count as surface, too.
+/// Finds whether the particle is inside, and finds the nearest point of the whole surface and its distance:
+/// the global minimum, by a branch-and-bound search. Where parts overlap or are nested, the nearest point may
+/// lie inside the solid, since faces that do not bound the solid count as surface, too.
 ///
 /// The normal points from the surface point to a particle that is outside, and from a particle that is inside
 /// to the surface point. For a particle within two lattice steps of the surface, where snapping would make

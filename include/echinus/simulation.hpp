@@ -425,9 +425,10 @@ class Simulation {
     /// then the energy is minimised, and every step towards the minimum is limited so that faces stay apart.
     /// When a frame ends, no face intersects a collider or, with CollisionMode::SurfacesAndSelf, another
     /// face. docs/limits.md lists the limits; unresolved_count counts most of the cases in which the
-    /// guarantee did not hold. A frame in which a collider moves far, or in which there is no room to move,
-    /// is divided into up to 64 substeps. Memory is kept from frame to frame: a frame that needs no more than
-    /// the previous ones allocates nothing, except for the maps of deforming colliders.
+    /// guarantee did not hold. A frame in which a collider moves far, in which something strikes hard, or
+    /// in which there is no room to move is divided into substeps, fewer than 128. Memory is kept from frame
+    /// to frame: a frame that needs no more than the previous ones allocates nothing, except for the maps of
+    /// deforming colliders.
     ///
     /// Jakobsen: a frame consists of Verlet integration with drag, the motion of the colliders,
     /// iteration_count relaxations of all distance constraints and all collisions of particles with

@@ -72,7 +72,8 @@ struct SceneVelocity {
     Vec3d angular; ///< rotation about the centre of mass of these particles, radians per second
 };
 
-/// A cloth of any shape: the arguments of make_cloth() for a mesh, by name.
+/// A cloth of any shape: the arguments of make_cloth() for a mesh, with the name of a file or the sizes of a
+/// shape in place of the mesh.
 struct MeshCloth {
     SceneModel mesh;                     ///< the initial shape
     std::optional<SceneModel> rest_mesh; ///< the rest shape, with the same faces; by default `mesh`
@@ -81,7 +82,8 @@ struct MeshCloth {
     VertexChoice pins;
 };
 
-/// A soft body: the arguments of make_soft_body(), by name.
+/// A soft body: the arguments of make_soft_body(), with the name of a file or the sizes of a shape in place
+/// of the mesh.
 struct SceneBody {
     /// A closed surface, which is filled with tetrahedra; or a file of tetrahedra, for read_tetrahedra().
     SceneModel mesh;

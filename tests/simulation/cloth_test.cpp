@@ -360,7 +360,7 @@ TEST(MeshCloth, RefusesOptionsOutOfRangeByName) {
     expect_option("vertex 4 is both pinned", {.pins = {0, 4}, .attachments = {{4}}});
     expect_option("a thread ends at vertex 11", {.threads = {{0, 11}}});
     expect_option("the cloth's scale is 0; it must lie in", {.scale = 0});
-    expect_option("its rest shape 2; it needs the same number", {.rest_vertices = {{}, {}}});
+    expect_option("its rest shape has 2; the numbers must be equal", {.rest_vertices = {{}, {}}});
     expect_option("the cloth has the rotation", {.pose = {{2, 0, 0, 0}, {}}});
     expect_refusal("the thread from vertex 3 to 3 has no length", sheet, {.threads = {{3, 3}}});
     TriangleMesh flat_at_rest = sheet;

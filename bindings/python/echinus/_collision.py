@@ -26,7 +26,7 @@ class ParticleCollision:
     thickness
         The distance that particles keep from the surface (0 to 1e9).
     friction
-        Coulomb's coefficient between particle and model; 0 is no friction (0 to 1e9).
+        Coulomb's coefficient of friction between particles and models; 0: no friction (0 to 1e9).
     allow_open_colliders
         Accept exact maps of open meshes, for which nothing is guaranteed.
     threads
@@ -137,7 +137,7 @@ class SurfaceCollision:
         The distance to keep from colliders (0 to 1e9); the effective value is at least a fiftieth of the mean edge
         length.
     friction
-        Coulomb's coefficient; 0 is no friction (0 to 1e9).
+        Coulomb's coefficient of friction; 0: no friction (0 to 1e9).
     self_thickness
         Distance that layers keep from each other; less near small faces. By default the thickness (0 to 1e9).
     self_collision

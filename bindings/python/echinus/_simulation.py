@@ -147,7 +147,8 @@ class Simulation:
         ``newton`` only: distance that layers keep from each other if they collide; less near small faces. By
         default the thickness (0 to 1e9).
     friction
-        Coulomb's coefficient between cloth and model; 0 is no friction (0 to 1e9).
+        Coulomb's coefficient of friction, for contacts with models and, if layers collide, between layers; 0: no
+        friction (0 to 1e9).
     bound
         The largest distance of a particle from the initial middle of all particles; if a particle is farther away,
         the simulation ends as diverged. 0: 10 000 times the initial extent (0 to 1e30).

@@ -419,7 +419,7 @@ void faces_within_batch(const ExactMapView& map, StridedSpan<const Vec3f> vertic
         if (total > UINT32_MAX)
             throw Error(
                 ErrorCode::InvalidOptions,
-                "more than 2^32 faces are within reach of the triangles; query fewer triangles at a time");
+                "2^32 faces or more are within reach of the triangles; query fewer triangles at a time");
         lists.offsets[i] = static_cast<std::uint32_t>(total);
     }
     lists.faces.clear();

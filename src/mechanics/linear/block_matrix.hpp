@@ -48,8 +48,8 @@ class BlockMatrix {
     std::uint32_t find_multiple(std::uint32_t row, std::uint32_t column) const;
     static constexpr std::uint32_t kNone = UINT32_MAX;
 
-    /// Adds a block for a row and a column that contacts couple and the pattern does not; not on the
-    /// diagonal.
+    /// Adds a block that contacts couple but the pattern does not contain.
+    /// @pre the row differs from the column
     void add_contact(const Coupling& at, const Block& value) { added_contacts_.push_back({at, value}); }
     /// Sets `contacts` to the blocks added since clear(): those of the same row and column are summed in
     /// their order.

@@ -28,8 +28,8 @@ void require_possible(const TriangleMesh& mesh, const MeshClothOptions& options)
     if (mesh.faces.empty() && options.threads.empty()) refuse_mesh("the cloth has neither faces nor threads");
     if (!mesh.faces.empty()) require_valid(mesh);
     require_option(options.rest_vertices.empty() || options.rest_vertices.size() == count,
-                   "the cloth has " + std::to_string(count) + " vertices, but its rest shape " +
-                       std::to_string(options.rest_vertices.size()) + "; it needs the same number");
+                   "the cloth has " + std::to_string(count) + " vertices, but its rest shape has " +
+                       std::to_string(options.rest_vertices.size()) + "; the numbers must be equal");
     require_ranges(options);
     require_valid(options.pose, "the cloth");
     for (const auto& ends : options.threads)

@@ -76,7 +76,8 @@ bool push_one(const KnownContacts& known, const ColliderNow& collider, std::size
               Particles& particles) noexcept;
 
 /// Lists the particles that are not known to be free. A particle is known to be free if its position and its
-/// last free position are both in the ball without surface, which is convex.
+/// last free position are both in the ball that contains no surface: since a ball is convex, it then contains
+/// the path between them, too.
 /// @param free_places  in the world, moved along with the collider
 void list_unproven(const KnownContacts& known, const ColliderNow& collider, const PointArrays& positions,
                    const PointArrays& free_places, ParticleList& unproven) noexcept;
