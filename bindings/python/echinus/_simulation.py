@@ -123,8 +123,8 @@ class Simulation:
         ``jakobsen`` only: relaxations per frame, each of all distance constraints and then of all contacts; more
         relaxations take longer and leave less stretch (1 to 1e6).
     newton_step_count
-        ``newton`` only: the largest number of steps of Newton's method per frame, or twice that number while there
-        is no contact; fewer are taken if it converges (1 to 1000).
+        ``newton`` only: the largest number of steps of Newton's method per frame or substep, or twice that number
+        while there is no contact; fewer are taken if it converges (1 to 1000).
     rest_frame_count
         The number of consecutive frames for which all particles must be slow and near one position (1 to 1e9).
     rest_distance

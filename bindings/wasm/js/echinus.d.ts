@@ -739,8 +739,8 @@ export interface SceneDescription {
      */
     iterations?: number;
     /**
-     * `newton` only: the largest number of steps of Newton's method per frame, or twice that number while there is no
-     * contact; fewer are taken if it converges (1 to 1000). Default: 4.
+     * `newton` only: the largest number of steps of Newton's method per frame or substep, or twice that number while
+     * there is no contact; fewer are taken if it converges (1 to 1000). Default: 4.
      */
     newton_steps?: number;
     /**

@@ -1194,8 +1194,8 @@ typedef struct echinus_simulation_options {
     /// Jakobsen only: relaxations per frame, each of all distance constraints and then of all contacts; more
     /// relaxations take longer and leave less stretch (1 to 1e6)
     uint32_t iteration_count;
-    /// Newton only: the largest number of steps of Newton's method per frame, or twice that number while
-    /// there is no contact; fewer are taken if it converges (1 to 1000)
+    /// Newton only: the largest number of steps of Newton's method per frame or substep, or twice that number
+    /// while there is no contact; fewer are taken if it converges (1 to 1000)
     uint32_t newton_step_count;
     /// The number of consecutive frames for which all particles must be slow and near one position (1 to 1e9)
     uint32_t rest_frame_count;
