@@ -208,7 +208,7 @@ enum class CollisionMode : std::uint8_t {
 
 /// A continuous material in SI units (docs/mechanics.md): each step minimises the energy of inertia, material
 /// and contact by Newton's method with multigrid. Cloth and soft bodies stretch according to their materials,
-/// whatever the resolution and the time step; 1/60 s per frame is a good step.
+/// nearly independently of the resolution and the time step; 1/60 s per frame is a good step.
 struct NewtonOptions {
     ClothMaterial material{};
     /// The largest number of steps of Newton's method in each frame or substep; twice as many are allowed

@@ -142,7 +142,7 @@ class Simulation:
         bending constraints (0 to 1.99).
     thickness
         Distance that the deformable keeps from colliders, by default half the mean rest length of structural
-        constraints (0 to 1e9).
+        constraints or, for soft bodies, half the mean edge length (0 to 1e9).
     self_thickness
         ``newton`` only: distance that layers keep from each other if they collide; less near small faces. By
         default the thickness (0 to 1e9).

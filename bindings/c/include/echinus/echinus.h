@@ -1212,7 +1212,7 @@ typedef struct echinus_simulation_options {
     /// bending constraints (0 to 1.99)
     double stiffness[ECHINUS_CONSTRAINT_KIND_COUNT];
     /// Distance that the deformable keeps from colliders, by default half the mean rest length of structural
-    /// constraints (0 to 1e9), or ECHINUS_THICKNESS_CHOSEN
+    /// constraints or, for soft bodies, half the mean edge length (0 to 1e9), or ECHINUS_THICKNESS_CHOSEN
     double thickness;
     /// Newton only: distance that layers keep from each other if they collide; less near small faces. By
     /// default the thickness (0 to 1e9), or ECHINUS_THICKNESS_CHOSEN
