@@ -50,22 +50,6 @@ CirclePoint circle_point(std::uint64_t index, std::uint64_t count) {
     }
 }
 
-namespace {
-
-/// The angle whose tangent is sine / (1 + cosine), which is half the angle with this sine and cosine. It is
-/// halved three more times, so that a short series suffices. @pre sine and cosine are not negative
-double half_angle_of(double sine, double cosine) {
-    double tangent = sine / (1 + cosine);
-    for (int i = 0; i < 3; ++i) tangent = tangent / (1 + std::sqrt(1 + tangent * tangent));
-    // atan(x) = x - x^3 / 3 + x^5 / 5 ..., exact to the last bit for tangents up to 0.1.
-    const double square = tangent * tangent;
-    double sum = 0;
-    for (int power = 17; power > 0; power -= 2) sum = 1.0 / power - square * sum;
-    return 8 * tangent * sum;
-}
-
-} // namespace
-
 Rotation Rotation::about(const Vec3d& axis, double angle_rad) {
     // Half the angle, rounded to steps of a full turn / 2^50, 6e-15 rad, so that every machine gives the same
     // bits.
@@ -91,7 +75,7 @@ Vec3d Rotation::vector() const {
     const Vec3d axis{sign * x, sign * y, sign * z};
     const double sine = length(axis);
     if (!(sine > 0)) return {};
-    return axis * (4 * half_angle_of(sine, sign * w) / sine);
+    return axis * (2 * portable_atan2(sine, sign * w) / sine);
 }
 
 Rotation operator*(const Rotation& a, const Rotation& b) {

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
@@ -33,17 +32,34 @@ inline double portable_log(double x) {
     return 2 * s * odd_series(s * s) + exponent * std::numbers::ln2;
 }
 
-/// The angle of (x, y), in [-pi, pi]; 0 for the origin.
+/// The angle of (x, y), in [-pi, pi]; 0 for the origin, NaN for NaN. The sign of a zero y distinguishes pi
+/// from -pi. @pre not both are infinite
 inline double portable_atan2(double y, double x) {
-    const double across = std::abs(y), along = std::abs(x), larger = std::max(across, along);
-    if (!(larger > 0)) return 0;
-    double tangent = std::min(across, along) / larger;
+    const double across = std::abs(y), along = std::abs(x);
+    if (across + along == 0) return 0;
+    const bool is_steep = across > along;
+    double tangent = is_steep ? along / across : across / along;
     // The tangent of a quarter of the angle.
     for (int i = 0; i < 2; ++i) tangent /= 1 + std::sqrt(1 + tangent * tangent);
     double angle = 4 * tangent * odd_series(-tangent * tangent);
-    if (across > along) angle = std::numbers::pi / 2 - angle;
+    if (is_steep) angle = std::numbers::pi / 2 - angle;
     if (x < 0) angle = std::numbers::pi - angle;
     return std::copysign(angle, y);
+}
+
+/// The cube root. @pre x is finite and not negative
+inline double portable_cbrt(double x) {
+    if (x == 0) return 0;
+    int exponent = 0;
+    double scaled = std::frexp(x, &exponent); // exact
+    for (; exponent % 3 != 0; --exponent) scaled *= 2;
+    double root = (2 + scaled) / 3; // the tangent at 1, within 0.42 for scaled in [0.5, 4)
+    // Halley's method, each step of which cubes the error.
+    for (int i = 0; i < 4; ++i) {
+        const double cube = root * root * root;
+        root *= (cube + 2 * scaled) / (2 * cube + scaled);
+    }
+    return std::ldexp(root, exponent / 3);
 }
 
 inline constexpr float kPi = std::numbers::pi_v<float>;

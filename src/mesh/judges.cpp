@@ -1,3 +1,4 @@
+#include "geometry/elementary.hpp"
 #include "mesh/faces.hpp"
 
 #include <echinus/mesh.hpp>
@@ -17,8 +18,8 @@ double solid_angle(const Vec3d& a, const Vec3d& b, const Vec3d& c) {
     const double la = length(a);
     const double lb = length(b);
     const double lc = length(c);
-    return 2 *
-           std::atan2(dot(a, cross(b, c)), la * lb * lc + dot(a, b) * lc + dot(b, c) * la + dot(c, a) * lb);
+    return 2 * portable_atan2(dot(a, cross(b, c)),
+                              la * lb * lc + dot(a, b) * lc + dot(b, c) * la + dot(c, a) * lb);
 }
 
 } // namespace

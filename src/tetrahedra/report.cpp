@@ -1,3 +1,4 @@
+#include "geometry/elementary.hpp"
 #include "geometry/orientation.hpp"
 #include "tetrahedra/tetrahedron_faces.hpp"
 
@@ -5,7 +6,6 @@
 #include <echinus/tetrahedra.hpp>
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 #include <numbers>
 #include <string>
@@ -36,7 +36,7 @@ Corners corners_of(const TetrahedralMesh& mesh, const Tetrahedron& tetrahedron) 
 /// The dihedral angle at the edge from a to b; c and d are the other two corners.
 double angle_at_edge(const Vec3d& a, const Vec3d& b, const Vec3d& c, const Vec3d& d) {
     const Vec3d to_c = cross(b - a, c - a), to_d = cross(b - a, d - a);
-    return std::atan2(length(cross(to_c, to_d)), dot(to_c, to_d));
+    return portable_atan2(length(cross(to_c, to_d)), dot(to_c, to_d));
 }
 
 void add_edges(const Corners& p, Extremes& lengths, Extremes& angles) {

@@ -1,5 +1,6 @@
 #include "exact_map/layout.hpp"
 #include "geometry/box.hpp"
+#include "geometry/elementary.hpp"
 #include "geometry/parallel.hpp"
 #include "geometry/whole_numbers.hpp"
 #include "tetrahedra/body_lattice.hpp"
@@ -207,13 +208,13 @@ Tetrahedralization stuff_count(const ExactMapView& map, const Box& box,
     };
     // Starts as if the model filled its box, where twelve tetrahedra fill a cube; so the first size is too
     // large rather than too small.
-    double size = std::max(std::cbrt(12 * volume_of(box) / wanted), box.largest_coordinate() / 2048);
+    double size = std::max(portable_cbrt(12 * volume_of(box) / wanted), box.largest_coordinate() / 2048);
     Tetrahedralization best;
     for (int i = 0; i < kMostTries; ++i) {
         if (i > 0 && BodyLattice::vertex_count_around(box.low, box.high, size) > most_vertices) break;
         Tetrahedralization body = stuff(map, box, size, options);
         const auto count = static_cast<double>(body.mesh.tetrahedra.size());
-        size *= std::clamp(std::cbrt(count / wanted), 0.5, 2.0);
+        size *= std::clamp(portable_cbrt(count / wanted), 0.5, 2.0);
         if (i == 0 || miss(body) < miss(best)) best = std::move(body);
         if (miss(best) <= kTolerance) break;
     }

@@ -298,11 +298,29 @@ TEST(Elementary, AnglesAreThoseOfTheCLibraryToRounding) {
     EXPECT_EQ(portable_atan2(0, -1), std::numbers::pi);
     EXPECT_EQ(portable_atan2(-0.0, -1), -std::numbers::pi);
     EXPECT_EQ(portable_atan2(2, 0), std::numbers::pi / 2);
+    const double nan = std::numeric_limits<double>::quiet_NaN();
+    for (const double other : {0.0, 1.0, nan}) {
+        EXPECT_TRUE(std::isnan(portable_atan2(nan, other))) << other;
+        EXPECT_TRUE(std::isnan(portable_atan2(other, nan))) << other;
+    }
+}
+
+TEST(Elementary, CubeRootsAreThoseOfTheCLibraryToRounding) {
+    PortableRandom random(3);
+    for (int i = 0; i < 100000; ++i) {
+        const double x = std::ldexp(random.uniform(0.5, 1), static_cast<int>(random.uniform(-1000, 1000)));
+        EXPECT_NEAR(portable_cbrt(x), std::cbrt(x), 8e-16 * std::cbrt(x)) << x;
+    }
+    EXPECT_EQ(portable_cbrt(0), 0);
+    EXPECT_EQ(portable_cbrt(1), 1);
+    EXPECT_EQ(portable_cbrt(8), 2);
+    EXPECT_EQ(portable_cbrt(0x1p-30), 0x1p-10);
 }
 
 TEST(Elementary, HasTheSameBitsOnEveryMachine) {
     EXPECT_EQ(std::bit_cast<std::uint64_t>(portable_log(0.3)), 0xbff34378fcbda720u);
     EXPECT_EQ(std::bit_cast<std::uint64_t>(portable_atan2(0.3, -0.7)), 0x4005e4c36ca0118au);
+    EXPECT_EQ(std::bit_cast<std::uint64_t>(portable_cbrt(0.3)), 0x3fe56bfea66ef78du);
 }
 
 TEST(Scratch, KeepsArraysApartInWhateverOrderTheyAreTakenAndGivenBack) {

@@ -91,7 +91,8 @@ std::string size_text(std::size_t byte_count) {
     auto size = static_cast<double>(byte_count);
     for (; size >= 1000 && unit + 1 < kUnits.size(); ++unit) size /= 1000;
     const int decimals = unit == 0 || size >= 100 ? 0 : size >= 10 ? 1 : 2;
-    const double step = std::pow(10.0, -decimals);
+    constexpr std::array kSteps{1.0, 0.1, 0.01}; // of the last digit, by the number of decimals
+    const double step = kSteps[static_cast<std::size_t>(decimals)];
     char text[32];
     std::snprintf(text, sizeof text, "%.*f %s", decimals, std::ceil(size / step) * step, kUnits[unit]);
     return text;

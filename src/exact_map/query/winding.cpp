@@ -5,6 +5,7 @@
 #include "exact_map/layout.hpp"
 #include "exact_map/query/place_in_bands.hpp"
 #include "exact_map/query/ray_crossing.hpp"
+#include "geometry/elementary.hpp"
 #include "geometry/whole_numbers.hpp"
 
 #include <echinus/exact_map.hpp>
@@ -57,7 +58,7 @@ double cone_solid_angle(const LatticePoint& a, const LatticePoint& b, const Latt
     const double numerator =
         volume == 0 ? std::fabs(dot(nudge, Vec3d(normal))) : share * std::fabs(static_cast<double>(volume));
     const double denominator = la * lb * lo + dot(pa, pb) * lo + dot(pb, po) * la + dot(po, pa) * lb;
-    const double angle = 2 * std::atan2(numerator, denominator);
+    const double angle = 2 * portable_atan2(numerator, denominator);
     const bool positive = volume != 0 ? volume > 0 : sign_of_perturbation(normal) < 0;
     return positive ? angle : -angle;
 }

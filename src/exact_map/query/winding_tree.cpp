@@ -2,6 +2,7 @@
 
 #include "directions/face_cone.hpp"
 #include "exact_map/layout.hpp"
+#include "geometry/elementary.hpp"
 
 #include <echinus/exact_map.hpp>
 
@@ -74,20 +75,9 @@ struct Angle {
         im *= scale;
     }
 
-    double in_turns() const { return turns + argument() / (2 * std::numbers::pi); }
-
-  private:
-    /// Our own atan2, since those of C libraries differ in the last bit. The angle is halved until the series
-    /// is short: tan(x / 2) = y / (x + length).
-    double argument() const {
-        double x = std::fabs(re), y = std::fabs(im);
-        for (int halvings = 0; halvings < 3; ++halvings) x += std::sqrt(x * x + y * y);
-        const double t = y / x, s = t * t; // at most tan(pi / 16)
-        double series = 0;
-        for (int power = 21; power > 0; power -= 2) series = 1.0 / power - s * series;
-        const double acute = 8 * t * series;
-        const double angle = re < 0 ? std::numbers::pi - acute : acute;
-        return im < 0 ? -angle : angle;
+    double in_turns() const {
+        const double upper_im = im + 0.0; // -0 becomes 0, since add() counts it as not negative
+        return turns + portable_atan2(upper_im, re) / (2 * std::numbers::pi);
     }
 };
 
