@@ -132,7 +132,7 @@ Components find_components(const TriangleMesh& mesh) {
 
 namespace {
 
-constexpr std::uint32_t kNoFace = std::numeric_limits<std::uint32_t>::max();
+constexpr std::uint32_t kNoPatch = UINT32_MAX;
 
 /// The face across an edge, if there is exactly one.
 struct Neighbour {
@@ -155,10 +155,10 @@ std::vector<std::array<Neighbour, 3>> find_neighbours(std::span<const EdgeUse> e
 /// Finds the patches, the orientation of their faces, and which of them are orientable.
 Orientation find_patches(std::span<const EdgeUse> edge_uses, std::size_t face_count) {
     const auto neighbours = find_neighbours(edge_uses, face_count);
-    Orientation result{std::vector(face_count, kNoFace), std::vector<bool>(face_count), {}, {}};
+    Orientation result{std::vector(face_count, kNoPatch), std::vector<bool>(face_count), {}, {}};
     std::vector<std::uint32_t> waiting;
     for (std::uint32_t first = 0; first < face_count; ++first) {
-        if (result.patch_of_face[first] != kNoFace) continue;
+        if (result.patch_of_face[first] != kNoPatch) continue;
         const auto patch = kept_as<std::uint32_t>(result.is_orientable.size());
         result.is_orientable.push_back(true);
         result.patch_of_face[first] = patch;
@@ -169,7 +169,7 @@ Orientation find_patches(std::span<const EdgeUse> edge_uses, std::size_t face_co
             for (const Neighbour& neighbour : neighbours[face]) {
                 if (neighbour.face == kNoFace) continue;
                 const bool is_turned = result.is_turned[face] != neighbour.runs_alike;
-                if (result.patch_of_face[neighbour.face] == kNoFace) {
+                if (result.patch_of_face[neighbour.face] == kNoPatch) {
                     result.patch_of_face[neighbour.face] = patch;
                     result.is_turned[neighbour.face] = is_turned;
                     waiting.push_back(neighbour.face);

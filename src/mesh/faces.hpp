@@ -9,6 +9,9 @@
 
 namespace echinus {
 
+/// In place of the number of a face: there is none.
+inline constexpr std::uint32_t kNoFace = UINT32_MAX;
+
 /// Are two of the three indices equal?
 bool has_equal_corners(const Triangle& face);
 

@@ -1,5 +1,7 @@
 #pragma once
 
+#include "mesh/faces.hpp"
+
 #include <echinus/mesh.hpp>
 
 #include <cstddef>
@@ -16,8 +18,6 @@ struct Ray {
 
 /// A ray's first hit on a mesh.
 struct RayHit {
-    static constexpr std::uint32_t kNoFace = 0xFFFFFFFF;
-
     std::uint32_t face = kNoFace;
     float distance = 0; ///< in lengths of the ray's direction
     float u = 0, v = 0; ///< the point is (1 - u - v) corner 0 + u corner 1 + v corner 2

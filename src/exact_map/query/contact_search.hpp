@@ -15,14 +15,10 @@ namespace echinus {
 /// The errors of two snapped positions together are at most sqrt(3) lattice steps.
 inline constexpr double kSnapping = 2;
 
-inline bool is_nan(const Vec3f& v) {
-    return std::isnan(v.x) || std::isnan(v.y) || std::isnan(v.z);
-}
-
 /// The signed distance of a point that is not finite.
 inline float signed_distance_without_contact(const Vec3f& point_local) {
-    return is_nan(point_local) ? std::numeric_limits<float>::quiet_NaN()
-                               : std::numeric_limits<float>::infinity();
+    return has_nan(point_local) ? std::numeric_limits<float>::quiet_NaN()
+                                : std::numeric_limits<float>::infinity();
 }
 
 /// Contacts in a stretched world. The stretch is factored into one number, the unit of lengths, and factors

@@ -2,6 +2,7 @@
 
 #include "directions/lattice.hpp"
 #include "exact_map/query/place_in_bands.hpp"
+#include "mesh/faces.hpp"
 
 #include <echinus/contact.hpp>
 #include <echinus/exact_map_view.hpp>
@@ -125,8 +126,6 @@ struct NearestSearch {
     double farthest;                   ///< as for nearest_face()
     std::uint32_t near_leaf = kNoLeaf; ///< leaf_near(), or kNoLeaf if not yet known
 };
-
-inline constexpr std::uint32_t kNoFace = UINT32_MAX;
 
 /// The nearest face of a place, or kNoFace. The result equals that of nearest_face() on every instruction
 /// set. The lanes are the boxes of a node or the faces of a leaf, so it needs no places near each other.

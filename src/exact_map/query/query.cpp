@@ -108,7 +108,7 @@ ContactSearch search_everywhere(const ExactMapView& map) {
 } // namespace
 
 float winding_number(const ExactMapView& map, Vec3f point_local, float tolerance) noexcept {
-    if (is_nan(point_local)) return std::numeric_limits<float>::quiet_NaN();
+    if (has_nan(point_local)) return std::numeric_limits<float>::quiet_NaN();
     const double wanted = tolerance > 0 ? double{tolerance} : 0;
     return static_cast<float>(winding_number_at(map, frame_of(map), point_local, wanted));
 }

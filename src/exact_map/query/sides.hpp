@@ -4,6 +4,7 @@
 #include "exact_map/query/place_in_bands.hpp"
 #include "exact_map/query/winding.hpp"
 
+#include <cmath>
 #include <cstdint>
 #include <span>
 
@@ -17,7 +18,7 @@ inline constexpr Side kUncertainBit = 2;
 
 /// A point with a NaN has no position, so no answer about it is certain.
 inline bool has_nan(const Vec3f& point) {
-    return point.x != point.x || point.y != point.y || point.z != point.z;
+    return std::isnan(point.x) || std::isnan(point.y) || std::isnan(point.z);
 }
 
 /// The scalar query, which is the specification.
