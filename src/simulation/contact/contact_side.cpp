@@ -133,11 +133,14 @@ bool ContactSide::list(Places ends, const Workers& workers) {
     is_elsewhere = true;
     away_before = {0, deformed};
     away = {deformed, 0};
-    const bool is_of_itself = pairs.is_of_itself();
-    pairs.list({listed_from, listed_to, is_of_itself ? listed_from : obstacle_from(),
-                is_of_itself ? listed_to : obstacle_places},
-               is_other_, starts_there, workers);
+    pairs.list(displacements(listed_from, listed_to), is_other_, starts_there, workers);
     return true;
+}
+
+/// The displacements of the surface between two states, and those of the obstacle that are examined.
+PairSet::Displacements ContactSide::displacements(const PointArrays& from, const PointArrays& to) const {
+    if (pairs.is_of_itself()) return {from, to, from, to};
+    return {from, to, obstacle_from(), obstacle_places};
 }
 
 void ContactSide::measure_towards(Places goals, const Workers& workers) {
@@ -163,15 +166,7 @@ void ContactSide::measure(const Workers& workers) {
 }
 
 float ContactSide::closing_of(const Pair& pair, const Vec3f& normal) const {
-    std::array<float, 2> most;
-    most.fill(-std::numeric_limits<float>::infinity());
-    const std::size_t of_own = own_count(pair.kind), moving = pairs.moving_count(pair);
-    for (std::size_t k = 0; k < moving; ++k) {
-        const float along = dot(normal, base[pair.points[k]] - safe[pair.points[k]]);
-        float& of_part = most[k < of_own ? 0 : 1];
-        of_part = std::max(of_part, k < of_own ? -along : along);
-    }
-    return most[0] + (moving == 4 ? most[1] : obstacle_closing(pair, normal));
+    return echinus::closing_of(pair, normal, displacements(safe, base));
 }
 
 double ContactSide::overlap_ahead(std::span<std::uint8_t> may_touch) const {

@@ -123,6 +123,7 @@ struct ContactSide {
 
   private:
     const PointArrays& obstacle_at_start() const { return pairs.is_of_itself() ? safe : obstacle_from(); }
+    PairSet::Displacements displacements(const PointArrays& from, const PointArrays& to) const;
     Vec3f common_motion(const PointArrays& from, const PointArrays& to) const;
     bool mark_others(const PointArrays& reference, const PointArrays& places);
     void take_others(bool starts_there);

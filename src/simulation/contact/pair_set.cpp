@@ -93,19 +93,20 @@ void PairSet::find_pairs(const Displacements& displacements, const Workers& work
     found_.append_to(near_);
 }
 
-/// How far displacements close a pair along its normal.
-float PairSet::closing_of(const Pair& pair, const Vec3f& normal, const Displacements& displacements) const {
-    std::array<float, 2> most;
-    most.fill(-std::numeric_limits<float>::infinity());
+float closing_of(const Pair& pair, const Vec3f& normal, const PairSet::Displacements& displacements) {
+    const auto& [own_from, own_to, obstacle_from, obstacle_to] = displacements;
+    constexpr float kNothing = -std::numeric_limits<float>::infinity();
+    const auto along = [&](const PointArrays& from, const PointArrays& to, std::uint32_t point) {
+        return dot(normal, to[point] - from[point]);
+    };
     const std::size_t of_own = own_count(pair.kind);
-    for (std::size_t k = 0; k < 4; ++k) {
-        const std::uint32_t point = pair.points[k];
-        const float along =
-            k < of_own ? -dot(normal, displacements.own_to[point] - displacements.own_from[point])
-                       : dot(normal, displacements.obstacle_to[point] - displacements.obstacle_from[point]);
-        most[k < of_own ? 0 : 1] = std::max(most[k < of_own ? 0 : 1], along);
-    }
-    return most[0] + most[1];
+    float most_own = kNothing, most_of_obstacle = kNothing;
+    for (std::size_t k = 0; k < of_own; ++k)
+        most_own = std::max(most_own, -along(own_from, own_to, pair.points[k]));
+    if (&obstacle_from == &obstacle_to) return most_own;
+    for (std::size_t k = of_own; k < 4; ++k)
+        most_of_obstacle = std::max(most_of_obstacle, along(obstacle_from, obstacle_to, pair.points[k]));
+    return most_own + most_of_obstacle;
 }
 
 /// Makes the pairs that were found and measured the list, the nearest first, so that a call that needs only

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "geometry/workers.hpp"
+#include "simulation/contact/thresholds.hpp"
 #include "simulation/particles.hpp"
 #include "simulation/state/state_archive.hpp"
 #include "simulation/surfaces/elements.hpp"
@@ -35,7 +36,7 @@ class PairSet {
     /// Sets the distance within which pairs are listed; all lengths are in its unit.
     void set_reach(float reach) { reach_ = reach; }
     /// How far a vertex may end from its expected position.
-    float covered() const { return reach_ / 4; }
+    float covered() const { return reach_ * threshold::kCoveredShare; }
 
     /// The displacements of the surface and of the obstacle; for the surface and itself, both are the
     /// surface's. An obstacle never moves if it has the same array twice.
@@ -80,7 +81,6 @@ class PairSet {
   private:
     void find_pairs(const Displacements& displacements, const Workers& workers);
     void list_measured(const Displacements& displacements, std::size_t kept_count);
-    float closing_of(const Pair& pair, const Vec3f& normal, const Displacements& displacements) const;
     float nearer_by(const Pair& pair, const Course& course) const;
     void measure_new(const PointArrays& own, const PointArrays& obstacle, const Workers& workers);
 
@@ -97,5 +97,8 @@ class PairSet {
     std::vector<Pair> near_;
     std::vector<Separation> separations_;
 };
+
+/// How far displacements close a pair along its normal.
+float closing_of(const Pair& pair, const Vec3f& normal, const PairSet::Displacements& displacements);
 
 } // namespace echinus

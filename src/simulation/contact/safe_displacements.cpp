@@ -120,7 +120,7 @@ bool SafeDisplacements::correct(ContactSide& side, ScratchVector<float>& enough)
         const float so_far = pushed(side, p);
         if (so_far < enough[p]) continue;
         const Plane plane = plane_between(side, p);
-        enough[p] = so_far + plane.left() - side.least_gap / 4;
+        enough[p] = so_far + plane.left() - side.least_gap * threshold::kPushMargin;
         if (plane.left() < 0 && stays_apart(side, p))
             enough[p] = std::nextafter(so_far, std::numeric_limits<float>::infinity());
         else if (plane.left() < 0)
@@ -150,7 +150,8 @@ bool SafeDisplacements::push_apart(ContactSide& side, const Pair& pair, const Pl
             mass[part] += rules_.masses.empty() ? 0 : static_cast<float>(rules_.masses[i]);
     }
     if (moving < 4) most[1] = held[1] = side.obstacle_closing(pair, normal);
-    const float missing = most[0] + most[1] - plane.room * threshold::kPushedTo + side.least_gap / 4;
+    const float missing =
+        most[0] + most[1] - plane.room * threshold::kPushedTo + side.least_gap * threshold::kPushMargin;
     const std::array<float, 2> free{most[0] - held[0], most[1] - held[1]};
     const float of_first = moving < 4 ? 1 : rules_.masses.empty() ? 0.5F : mass[1] / (mass[0] + mass[1]);
     const float fair = missing * of_first;

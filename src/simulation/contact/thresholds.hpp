@@ -58,6 +58,10 @@ inline constexpr int kMostRoundsOutside = 4;
 /// The distance from its displacement, in mean edge lengths, within which a vertex looks for pairs; near
 /// models the thickness is added. A larger value lists more pairs, but less often.
 inline constexpr float kReach = 0.1F;
+/// How far from its expected position a vertex may end, as a share of the distance within which pairs are
+/// listed, before they are listed anew: two parts that approach each other leave half of it then. A larger
+/// value lists pairs less often; 0.5 would leave nothing.
+inline constexpr float kCoveredShare = 0.25F;
 /// The share of a gap, or of the thickness if that is less, that always remains open, so that rounding has no
 /// influence.
 inline constexpr float kLeastOfGap = 1.0F / 16, kLeastOfThickness = 1.0F / 4;
@@ -67,6 +71,10 @@ inline constexpr float kLeastGap = 1.0F / (1 << 19);
 /// not push it again; and the largest number of rounds through the pairs.
 inline constexpr float kPushedTo = 0.9F;
 inline constexpr int kMostPushingRounds = 64;
+/// How much farther than required, in least gaps, a pair is pushed, and how much earlier it is examined again
+/// while its particles are pushed. It exceeds the rounding of a push, which would otherwise leave pairs too
+/// near by a last digit. A larger value pushes particles farther than necessary.
+inline constexpr float kPushMargin = 0.25F;
 /// The least share of a displacement for which each of the planes must hold by which two elements are shown
 /// to pass each other. A smaller share proves this for more pairs, and takes more time.
 inline constexpr float kLeastShareOfPlane = 1.0F / 256;
