@@ -38,6 +38,101 @@ std::vector<std::uint8_t> without_faces(const std::vector<Collider>& colliders,
     return result;
 }
 
+/// The side between a deformable and a model with faces.
+ContactSide side_of_model(std::shared_ptr<const Elements> own, const PointArrays& places,
+                          const Collider& collider, float thickness, float edge_length) {
+    const TriangleMesh mesh = model_mesh(map_of_surface(collider)->view(), collider.scale);
+    PointArrays vertices;
+    vertices.load(mesh.vertices);
+    ContactSide side(
+        std::move(own), places,
+        std::make_shared<const Elements>(mesh.vertices.size(), mesh.faces, std::span<const Edge>{}),
+        std::move(vertices));
+    side.thickness = thickness;
+    side.extent = largest_coordinate(side.obstacle_places, mesh.vertices.size());
+    side.pairs.set_reach(
+        std::max(threshold::kReady * thickness, threshold::kReach * edge_length + thickness));
+    return side;
+}
+
+/// The side between a surface and itself. @param thickness  the wanted one
+ContactSide side_of_layers(const std::shared_ptr<const Elements>& own, const PointArrays& places,
+                           float thickness, float edge_length) {
+    ContactSide side(own, places);
+    side.thickness = std::min(thickness, threshold::kMostSelfThickness * edge_length);
+    side.pairs.set_reach(std::max(threshold::kReady * side.thickness, threshold::kReach * edge_length));
+    return side;
+}
+
+/// [vertex] the largest thickness between layers for which its neighbourhood leaves room.
+std::vector<float> most_self_thicknesses(const Elements& own, const Deformable& deformable,
+                                         float edge_length) {
+    std::vector<float> most(own.vertex_count(), threshold::kMostSelfThickness * edge_length);
+    const auto limit = [&](const auto& vertices, float least_height) {
+        for (const std::uint32_t v : vertices)
+            most[v] = std::min(most[v], threshold::kMostOfHeight * least_height);
+    };
+    for (const Element& element : own.all)
+        limit(element.vertices, least_height_of(element, deformable.positions));
+    for (const ElasticTetrahedron& tetrahedron : deformable.tetrahedra)
+        limit(tetrahedron.particles, least_height_of(tetrahedron));
+    return most;
+}
+
+/// The parts of their displacements that stopped bodies keep, from attempt to attempt: ever smaller shares of
+/// the displacements relative to the common one of the body, then of the whole ones, and in the end nothing.
+class Shortening {
+  public:
+    Vec3d goal(const Vec3d& from, const Vec3d& wanted, const Vec3d& common) const {
+        const Vec3d kept = keeps_common() ? common : Vec3d{};
+        return from + kept + (wanted - from - kept) * share();
+    }
+    bool keeps_nothing() const { return attempt_ >= kFirstWithout; }
+    bool is_last() const { return attempt_ == kLast; }
+    bool is_last_but_one() const { return attempt_ + 1 == kLast; }
+
+    /// Shortening the whole displacement helps against strain. If there is too little room, it takes long and
+    /// does not help.
+    void go_on(bool has_room) {
+        ++attempt_;
+        if (!has_room && !keeps_common() && !keeps_nothing()) attempt_ = kFirstWithout;
+    }
+
+  private:
+    static constexpr int kFirstOfAll = threshold::kMostHalvings,
+                         kFirstWithout = kFirstOfAll + threshold::kMostHalvingsOfAll,
+                         kLast = kFirstWithout + threshold::kMostHalvings;
+
+    bool keeps_common() const { return attempt_ < kFirstOfAll; }
+    double share() const {
+        if (keeps_nothing()) return 0;
+        return keeps_common() ? std::ldexp(1.0, -attempt_) : std::ldexp(0.5, kFirstOfAll - attempt_);
+    }
+
+    int attempt_ = 0;
+};
+
+using FourPoints = std::array<Vec3d, 4>;
+
+double longest_of(const FourPoints& displacements) {
+    double longest = 0;
+    for (const Vec3d& displacement : displacements) longest = std::max(longest, length(displacement));
+    return longest;
+}
+
+Vec3d weighted_sum(const FourPoints& points, const std::array<double, 4>& weights) {
+    Vec3d sum;
+    for (std::size_t k = 0; k < 4; ++k) sum += points[k] * weights[k];
+    return sum;
+}
+
+/// The nearest point of a pair's obstacle.
+Vec3d point_of_obstacle(PairKind kind, const FourPoints& points, const std::array<double, 4>& shares) {
+    Vec3d point;
+    for (std::size_t k = own_count(kind); k < 4; ++k) point += points[k] * shares[k];
+    return point;
+}
+
 /// The normal of a contact. If its parts move farther than their distance, they may pass each other.
 Vec3d normal_of(const PassingParts<double>& parts, double distance) {
     const double closing = -dot(parts.normal, parts.ahead);
@@ -66,47 +161,29 @@ SurfaceContacts::SurfaceContacts(const Deformable& deformable, const std::vector
       contacts_(own_->vertex_count(), colliders.size() + (options.layers_collide() ? 1 : 0), colliders.size(),
                 length(options.gravity)) {
     const float edge_length = mean_edge_length(*own_, deformable.positions);
+    const auto thickness = static_cast<float>(*options.thickness);
     PointArrays places;
     places.load(deformable.positions);
     const std::vector<std::uint8_t> has_none = without_faces(colliders, options);
     for (std::uint32_t c = 0; c < colliders.size(); ++c) {
         if (has_none[c] != 0) continue;
-        const Collider& collider = colliders[c];
         const std::vector<std::uint8_t> passes = let_through(deformable, c);
         const auto own =
             passes.empty() ? own_ : std::make_shared<const Elements>(elements_of(deformable, passes));
-        const TriangleMesh mesh = model_mesh(map_of_surface(collider)->view(), collider.scale);
-        PointArrays vertices;
-        vertices.load(mesh.vertices);
-        ContactSide& side = sides_.emplace_back(
-            own, places,
-            std::make_shared<const Elements>(mesh.vertices.size(), mesh.faces, std::span<const Edge>{}),
-            std::move(vertices));
-        side.number = c;
-        side.thickness = static_cast<float>(*options.thickness);
-        side.extent = largest_coordinate(side.obstacle_places, mesh.vertices.size());
-        side.pairs.set_reach(
-            std::max(threshold::kReady * side.thickness, threshold::kReach * edge_length + side.thickness));
+        sides_.push_back(side_of_model(own, places, colliders[c], thickness, edge_length));
+        sides_.back().number = c;
     }
-    most_.assign(own_->vertex_count(), threshold::kMostSelfThickness * edge_length);
-    for (const Element& element : own_->all)
-        for (const std::uint32_t v : element.vertices)
-            most_[v] =
-                std::min(most_[v], threshold::kMostOfHeight * least_height_of(element, deformable.positions));
-    for (const ElasticTetrahedron& tetrahedron : deformable.tetrahedra)
-        for (const std::uint32_t v : tetrahedron.particles)
-            most_[v] = std::min(most_[v], threshold::kMostOfHeight * least_height_of(tetrahedron));
     if (options.layers_collide()) {
-        ContactSide& side = sides_.emplace_back(own_, places);
-        side.number = static_cast<std::uint32_t>(collider_count_);
-        side.thickness = static_cast<float>(options.newton().self_thickness.value_or(*options.thickness));
-        side.thickness = std::min(side.thickness, threshold::kMostSelfThickness * edge_length);
-        side.pairs.set_reach(std::max(threshold::kReady * side.thickness, threshold::kReach * edge_length));
+        const auto between_layers =
+            static_cast<float>(options.newton().self_thickness.value_or(*options.thickness));
+        sides_.push_back(side_of_layers(own_, places, between_layers, edge_length));
+        sides_.back().number = static_cast<std::uint32_t>(collider_count_);
     }
     for (ContactSide& side : sides_) {
         side.friction = static_cast<float>(options.friction);
         side.ready = threshold::kReady * side.thickness;
     }
+    most_ = most_self_thicknesses(*own_, deformable, edge_length);
     most_missed_ = threshold::kMostMissed * edge_length;
     frames_.resize(collider_count_ + 1);
     is_touching_.resize(own_->vertex_count());
@@ -285,8 +362,11 @@ void SurfaceContacts::head_for(std::span<Vec3d> goals) {
         if (const FreeBody* const body = free_body_of(side.number)) side.head_for(body->goal_pose);
 }
 
-/// Makes the goals of free bodies their safe poses.
-void SurfaceContacts::arrive() {
+/// Makes these places, and the goals of free bodies, the safe state.
+void SurfaceContacts::arrive_at(Places places) {
+    has_moved_ = has_moved_ || !std::equal(places.begin(), places.end(), safe_places_.begin());
+    std::copy(places.begin(), places.end(), safe_places_.begin());
+    for (std::size_t i = 0; i < own_->vertex_count(); ++i) safe_.set(i, Vec3f(places[i]));
     for (FreeBody& body : free_bodies_) {
         body.safe_pose = body.goal_pose;
         particles_.move(body.collider(), body.safe_pose);
@@ -335,50 +415,35 @@ SurfaceContacts::Stopped SurfaceContacts::mark_stopped(Places goals, Places ends
 /// @return how many particles and free bodies were stopped
 std::size_t SurfaceContacts::go_towards(std::span<Vec3d> places, const StepEnergy& energy,
                                         const Workers& workers) {
-    constexpr int kFirstOfAll = threshold::kMostHalvings,
-                  kFirstWithout = kFirstOfAll + threshold::kMostHalvingsOfAll,
-                  kLast = kFirstWithout + threshold::kMostHalvings;
     Scratch& scratch = workers.scratch();
     const ScratchVector<Vec3d> wanted(places.begin(), places.end(), scratch);
-    const std::vector<Vec3d>& from = safe_places_;
     const ScratchVector<Vec3d> common =
-        common_displacements(from, wanted, masses_, bodies_, is_held_, workers);
+        common_displacements(safe_places_, wanted, masses_, bodies_, is_held_, workers);
     ScratchVector<Vec3d> goals = wanted;
     ScratchVector<std::uint8_t> is_stopped(goals.size(), scratch); // [body]
     std::optional<double> most_energy;
     std::size_t most_stopped = 0;
-    for (int halvings = 0;; ++halvings) {
-        const bool keeps_common = halvings < kFirstOfAll;
-        const double share = keeps_common               ? std::ldexp(1.0, -halvings)
-                             : halvings < kFirstWithout ? std::ldexp(0.5, kFirstOfAll - halvings)
-                                                        : 0;
-        for (std::size_t i = 0; i < goals.size(); ++i) {
-            if (is_held_[i] != 0 || is_stopped[bodies_[i]] == 0) continue;
-            const Vec3d kept = keeps_common ? common[bodies_[i]] : Vec3d{};
-            goals[i] = from[i] + kept + (wanted[i] - from[i] - kept) * share;
-        }
+    for (Shortening shortening;;) {
+        for (std::size_t i = 0; i < goals.size(); ++i)
+            if (is_held_[i] == 0 && is_stopped[bodies_[i]] != 0)
+                goals[i] = shortening.goal(safe_places_[i], wanted[i], common[bodies_[i]]);
         head_for(goals);
         std::copy(goals.begin(), goals.end(), places.begin());
         const bool is_safe = find_ends(places, {.is_held = is_held_, .masses = masses_}, workers);
         const Stopped stopped = mark_stopped(goals, places, is_stopped, workers);
         most_stopped = std::max(most_stopped, stopped.count);
         if (is_safe && most_stopped == 0) break;
-        // Shortening the whole displacement helps against strain. If there is too little room, it takes long
-        // and does not help.
-        if (!is_safe && share > 0 && halvings + 1 >= kFirstOfAll) halvings = kFirstWithout - 1;
-        if (share == 0) {
-            if (halvings == kLast || (is_safe && !stopped.is_any_new)) break;
-            if (!stopped.is_any_new || halvings + 1 == kLast)
+        if (shortening.keeps_nothing()) {
+            if (shortening.is_last() || (is_safe && !stopped.is_any_new)) break;
+            if (!stopped.is_any_new || shortening.is_last_but_one())
                 std::fill(is_stopped.begin(), is_stopped.end(), 1);
         } else if (is_safe) {
-            if (!most_energy) most_energy = energy(from);
+            if (!most_energy) most_energy = energy(safe_places_);
             if (energy(places) <= *most_energy) break;
         }
+        shortening.go_on(is_safe);
     }
-    has_moved_ = has_moved_ || !std::equal(places.begin(), places.end(), safe_places_.begin());
-    std::copy(places.begin(), places.end(), safe_places_.begin());
-    for (std::size_t i = 0; i < own_->vertex_count(); ++i) safe_.set(i, Vec3f(places[i]));
-    arrive();
+    arrive_at(places);
     return most_stopped;
 }
 
@@ -444,64 +509,65 @@ Vec3d SurfaceContacts::slip_start(const ContactSide& side, const Pair& pair,
 void SurfaceContacts::add_contacts(const ContactSide& side, Places goals, bool is_solved) {
     const auto pairs = side.pairs.pairs();
     const auto separations = side.pairs.separations();
-    const FreeBody* const body = free_body_of(side.number);
-    for (std::size_t p = 0; p < pairs.size(); ++p) {
-        const Pair& pair = pairs[p];
-        if (!(separations[p].gap > 0)) continue;
-        const std::size_t own = own_count(pair.kind), moving = side.pairs.moving_count(pair);
-        const double thickness{thickness_of(side, pair)};
-        // The proven gap may be a tenth less than the distance; it decides which pairs are measured again in
-        // double.
-        double approach = 0;
-        std::array<Vec3d, 4> displacements;
-        for (std::size_t k = 0; k < 4; ++k) {
-            const std::uint32_t i = pair.points[k];
-            displacements[k] = k < moving ? goals[i] - safe_places_[i] : side.obstacle_ahead(i);
-            approach = std::max(approach, length(displacements[k]));
-        }
-        if (!(double{separations[p].gap} - 2 * approach < double{threshold::kReady} * thickness)) continue;
-        std::array<Vec3d, 4> points;
-        for (std::size_t k = 0; k < 4; ++k)
-            points[k] = k < moving ? safe_places_[pair.points[k]]
-                                   : side.to_world(side.obstacle_places[pair.points[k]]);
-        const std::array<double, 4> shares = nearest_points(pair.kind, points);
-        Vec3d across, ahead;
-        for (std::size_t k = 0; k < 4; ++k) {
-            across += points[k] * (k < own ? shares[k] : -shares[k]);
-            ahead += displacements[k] * (k < own ? shares[k] : -shares[k]);
-        }
-        const double distance = length(across);
-        if (!(distance > 0)) continue;
-        const Vec3d normal = normal_of({pair.kind, points, across * (1 / distance), ahead}, distance);
-        const double gap = dot(normal, across);
-        ContactSet::Contact contact;
-        contact.key = {side.number, pair.kind, pair.points};
-        contact.normal = normal;
-        contact.offset = gap;
-        contact.thickness = thickness;
-        contact.friction = double{side.friction};
-        contact.particles.fill(pair.points[0]);
-        for (std::size_t k = 0; k < moving; ++k) {
-            const std::uint32_t i = pair.points[k];
-            const double weight = k < own ? shares[k] : -shares[k];
-            contact.particles[k] = i;
-            contact.weights[k] = weight;
-            contact.offset -= weight * dot(contact.normal, safe_places_[i]);
-            if (is_held_[i] != 0) continue;
-            contact.mobility += weight * weight / masses_[i];
-            contact.yielding += weight * weight / strengths_[i];
-        }
-        Vec3d start = slip_start(side, pair, shares);
-        if (body != nullptr) {
-            Vec3d point;
-            for (std::size_t k = own; k < 4; ++k) point += points[k] * shares[k];
-            body->join(contact, start, point);
-        }
-        if (!(gap + std::min(dot(normal, ahead), 0.0) < double{threshold::kReady} * thickness) ||
-            !(contact.mobility > 0))
-            continue;
-        contacts_.add(contact, start, is_solved ? std::optional(gap) : std::nullopt);
+    for (std::size_t p = 0; p < pairs.size(); ++p)
+        if (separations[p].gap > 0) add_contact(side, pairs[p], separations[p].gap, goals, is_solved);
+}
+
+/// Adds the contact of a pair, measured in double, if it may push.
+/// @param proven_gap  in single precision; it may be a tenth less than the distance
+void SurfaceContacts::add_contact(const ContactSide& side, const Pair& pair, float proven_gap, Places goals,
+                                  bool is_solved) {
+    const double thickness{thickness_of(side, pair)}, ready = double{threshold::kReady} * thickness;
+    const std::size_t own = own_count(pair.kind), moving = side.pairs.moving_count(pair);
+    FourPoints displacements, points;
+    for (std::size_t k = 0; k < 4; ++k) {
+        const std::uint32_t i = pair.points[k];
+        displacements[k] = k < moving ? goals[i] - safe_places_[i] : side.obstacle_ahead(i);
     }
+    if (!(double{proven_gap} - 2 * longest_of(displacements) < ready)) return;
+    for (std::size_t k = 0; k < 4; ++k) {
+        const std::uint32_t i = pair.points[k];
+        points[k] = k < moving ? safe_places_[i] : side.to_world(side.obstacle_places[i]);
+    }
+    const std::array<double, 4> shares = nearest_points(pair.kind, points);
+    std::array<double, 4> weights = shares;
+    for (std::size_t k = own; k < 4; ++k) weights[k] = -shares[k];
+    const Vec3d across = weighted_sum(points, weights), ahead = weighted_sum(displacements, weights);
+    const double distance = length(across);
+    if (!(distance > 0)) return;
+    const Vec3d normal = normal_of({pair.kind, points, across * (1 / distance), ahead}, distance);
+    const double gap = dot(normal, across);
+    ContactSet::Contact contact = contact_along(normal, gap, side, pair, weights);
+    contact.thickness = thickness;
+    Vec3d start = slip_start(side, pair, shares);
+    if (const FreeBody* const body = free_body_of(side.number))
+        body->join(contact, start, point_of_obstacle(pair.kind, points, shares));
+    if (gap + std::min(dot(normal, ahead), 0.0) < ready && contact.mobility > 0)
+        contacts_.add(contact, start, is_solved ? std::optional(gap) : std::nullopt);
+}
+
+/// The contact of a pair's moving points along a normal.
+/// @param weights  of the points in the difference between the pair's nearest points
+ContactSet::Contact SurfaceContacts::contact_along(const Vec3d& normal, double gap, const ContactSide& side,
+                                                   const Pair& pair,
+                                                   const std::array<double, 4>& weights) const {
+    ContactSet::Contact contact;
+    contact.key = {side.number, pair.kind, pair.points};
+    contact.normal = normal;
+    contact.offset = gap;
+    contact.friction = double{side.friction};
+    contact.particles.fill(pair.points[0]);
+    for (std::size_t k = 0; k < side.pairs.moving_count(pair); ++k) {
+        const std::uint32_t i = pair.points[k];
+        const double weight = weights[k];
+        contact.particles[k] = i;
+        contact.weights[k] = weight;
+        contact.offset -= weight * dot(normal, safe_places_[i]);
+        if (is_held_[i] != 0) continue;
+        contact.mobility += weight * weight / masses_[i];
+        contact.yielding += weight * weight / strengths_[i];
+    }
+    return contact;
 }
 
 void SurfaceContacts::put_outside(std::span<Vec3d> places, const StepEnergy& energy, const Workers& workers) {

@@ -139,7 +139,7 @@ class SurfaceContacts {
     bool meets_what_cannot_yield(const SafeDisplacements& displacements);
     FreeBody* free_body_of(std::uint32_t collider);
     void head_for(std::span<Vec3d> goals);
-    void arrive();
+    void arrive_at(Places places);
     struct Stopped {
         std::size_t count = 0;
         bool is_any_new = false;
@@ -150,6 +150,10 @@ class SurfaceContacts {
     std::size_t go_towards(std::span<Vec3d> places, const StepEnergy& energy, const Workers& workers);
     void find_contacts(Places goals, bool is_solved);
     void add_contacts(const ContactSide& side, Places goals, bool is_solved);
+    void add_contact(const ContactSide& side, const Pair& pair, float proven_gap, Places goals,
+                     bool is_solved);
+    ContactSet::Contact contact_along(const Vec3d& normal, double gap, const ContactSide& side,
+                                      const Pair& pair, const std::array<double, 4>& weights) const;
     float thickness_of(const ContactSide& side, const Pair& pair) const;
 
     std::shared_ptr<const Elements> own_;
