@@ -15,7 +15,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-const fs::path kFolder = ECHINUS_SHARED_MESHES;
+const fs::path kFolder = fs::path(ECHINUS_SHARED) / "meshes";
 
 struct ClosedMesh {
     const char* name;

@@ -169,12 +169,12 @@ TEST(SignedDistanceOracle, IsRightAboutNastyMeshes) {
 
 namespace {
 
-const std::filesystem::path kFolder = ECHINUS_SHARED_MESHES;
+const std::filesystem::path kFolder = std::filesystem::path(ECHINUS_SHARED) / "meshes";
 
 class DevelopmentMeshes : public testing::Test {
   protected:
     void SetUp() override {
-        if (!std::filesystem::is_directory(kFolder)) GTEST_SKIP() << "the development meshes are absent";
+        if (!std::filesystem::is_directory(kFolder)) GTEST_SKIP() << "there is no folder " << kFolder;
     }
 };
 

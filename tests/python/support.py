@@ -11,7 +11,7 @@ import pytest
 import echinus as ech
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-SHARED_MESHES = ROOT / ".." / "shared" / "meshes"
+SHARED_MESHES = ROOT / (os.environ.get("ECHINUS_SHARED") or "../shared") / "meshes"
 
 
 def programs_of(document):

@@ -170,8 +170,8 @@ TEST_F(InfoCommand, NoticesThatItsOutputGoesNowhere) {
 
 TEST_F(InfoCommand, ShowsThatTheDirtyHorseCanBeMended) {
     const std::filesystem::path horse =
-        std::filesystem::path(ECHINUS_SOURCE_FOLDER) / "../shared/meshes/horse_glmark2_raw.off";
-    if (!std::filesystem::exists(horse)) GTEST_SKIP() << "the development meshes are not there";
+        std::filesystem::path(ECHINUS_SHARED) / "meshes/horse_glmark2_raw.off";
+    if (!std::filesystem::exists(horse)) GTEST_SKIP() << "there is no file " << horse;
     const json report = info(horse.string());
     EXPECT_EQ(report["faces"], 7172);
     EXPECT_EQ(report["closed"], false);

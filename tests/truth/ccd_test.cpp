@@ -183,7 +183,7 @@ TEST(PublicCollisionQueries, AreStoppedIfTheyCollideAndSeldomElse) {
 }
 
 TEST(PublicCollisionQueries, AreStoppedIfTheyCollideAndSeldomElseInAllScenes) {
-    const fs::path folder = fs::path(ECHINUS_SHARED_TRUTH) / "ccd";
+    const fs::path folder = fs::path(ECHINUS_SHARED) / "truth/ccd";
     if (!fs::exists(folder)) GTEST_SKIP() << "the queries are not at " << folder;
     for (const fs::path& set : sets_in(folder)) expect_answers(set);
 }

@@ -3,14 +3,14 @@
 # mesh, and every mesh of a folder. Takes about an hour with ten million points; a few minutes with --points
 # 500000.
 #
-#   scripts/bench accuracy [--points N] [FOLDER]     FOLDER: ../shared/meshes, where it is at hand
+#   scripts/bench accuracy [--points N] [FOLDER]     FOLDER: the meshes of ECHINUS_SHARED, where it is at hand
 #
 # Fails when a mesh does not pass; the tables are written all the same. Each mesh's figures, by rule and kind
 # of point, are left in out/accuracy/MESH.json.
 set -euo pipefail
 cd "$(dirname "$0")/../../.."
 points=10000000
-folder=../shared/meshes # the development meshes: not part of the repository
+folder=${ECHINUS_SHARED:?is set by scripts/bench}/meshes
 out=out/accuracy
 page=docs/accuracy.md
 check=build/release/tests/echinus-check

@@ -311,7 +311,7 @@ TEST(SuperquadricMap, RefusesOptionsOutOfBounds) {
 }
 
 TEST(SuperquadricMapOfTheHorse, HasSeventeenSegmentsOnRequestAndTellsMostParticlesRight) {
-    const std::filesystem::path file = std::filesystem::path(ECHINUS_SHARED_MESHES) / "horse_6k.obj";
+    const std::filesystem::path file = std::filesystem::path(ECHINUS_SHARED) / "meshes/horse_6k.obj";
     if (!std::filesystem::exists(file)) GTEST_SKIP() << file << " is not there";
     const TriangleMesh horse = read_mesh(file);
     SuperquadricMapOptions options;
