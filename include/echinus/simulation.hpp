@@ -231,9 +231,10 @@ struct NewtonOptions {
     /// of the mean edge length, so that neighbours have room.
     std::optional<double> self_thickness{};
     /// Separate an initial state that intersects a model or itself, or lies inside a closed model, before the
-    /// first frame instead of rejecting it, by moving particles that are not pinned. An initial state that
-    /// cannot be separated is rejected. This takes up to about a hundred times as long as a search for
-    /// intersecting pairs (intersections.hpp), and needs the collision of surfaces.
+    /// first frame instead of rejecting it, by moving particles that are not pinned (docs/surfaces.md). An
+    /// initial state that cannot be separated is rejected. Each round costs a search for intersecting pairs
+    /// and a step of the material; there may be hundreds, so that 10 000 particles on a detailed model take
+    /// up to a minute. Needs the collision of surfaces.
     bool untangle = false;
 
     bool operator==(const NewtonOptions&) const = default;

@@ -51,6 +51,15 @@ class BlockMatrix {
     /// Adds a block that contacts couple but the pattern does not contain.
     /// @pre the row differs from the column
     void add_contact(const Coupling& at, const Block& value) { added_contacts_.push_back({at, value}); }
+    /// Adds a multiple of a block for a row and a column: to the pattern if it has them, otherwise as a
+    /// contact.
+    void add_coupling(const Coupling& at, const Block& block, float factor) {
+        const std::uint32_t entry = at[0] == at[1] ? diagonal[at[0]] : find_block(at[0], at[1]);
+        if (entry != kNone)
+            blocks.values[entry].add_scaled(block, factor);
+        else
+            add_contact(at, block * factor);
+    }
     /// Sets `contacts` to the blocks added since clear(): those of the same row and column are summed in
     /// their order.
     void set_contacts();

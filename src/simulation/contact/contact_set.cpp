@@ -281,12 +281,7 @@ void ContactSet::add_derivatives(Places places, std::span<Vec3d> gradient, Block
             for (std::size_t l = 0; l < contact.part_count; ++l) {
                 const double weight = contact.weights[k] * contact.weights[l];
                 if (weight == 0) continue;
-                const std::uint32_t j = contact.particles[l];
-                const std::uint32_t entry = i == j ? hessian->diagonal[i] : hessian->find_block(i, j);
-                if (entry != BlockMatrix::kNone)
-                    hessian->blocks.values[entry].add_scaled(block, static_cast<float>(weight));
-                else
-                    hessian->add_contact({i, j}, block * static_cast<float>(weight));
+                hessian->add_coupling({i, contact.particles[l]}, block, static_cast<float>(weight));
             }
         }
     }

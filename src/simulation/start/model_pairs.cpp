@@ -21,7 +21,21 @@ constexpr float kTouchInSteps = 2;
 
 ModelPairs::ModelPairs(const Collider& collider, std::vector<std::uint8_t> passes)
     : map_(map_of_surface(collider)->view()), local_(collider), body_(collider.pose, {1, 1, 1}),
-      in_body_(model_mesh(map_, collider.scale)), passes_(std::move(passes)) {}
+      in_body_(model_mesh(map_, collider.scale)),
+      is_mirrored_(collider.scale.x * collider.scale.y * collider.scale.z < 0), passes_(std::move(passes)) {
+    std::uint32_t most = 0;
+    for (std::uint32_t f = 0; f < map_.face_count(); ++f) most = std::max(most, map_.face_numbers[f]);
+    in_map_.resize(std::size_t{most} + 1);
+    for (std::uint32_t f = 0; f < map_.face_count(); ++f) in_map_[map_.face_numbers[f]] = f;
+}
+
+std::array<Vec3f, 3> ModelPairs::face(std::uint32_t number) const {
+    auto [a, b, c] = in_body_.faces[in_map_[number]];
+    if (is_mirrored_) std::swap(b, c);
+    return {body_.point_to_world<float>(in_body_.vertices[a]),
+            body_.point_to_world<float>(in_body_.vertices[b]),
+            body_.point_to_world<float>(in_body_.vertices[c])};
+}
 
 ModelPairs::Found ModelPairs::with(const TriangleMesh& surface) const {
     Found found;

@@ -5,6 +5,7 @@
 #include <echinus/collider.hpp>
 #include <echinus/intersections.hpp>
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -27,6 +28,8 @@ class ModelPairs {
     /// @param surface  in the world, including edges and vertices as faces without area
     Found with(const TriangleMesh& surface) const;
 
+    /// The corners of a face of the model's mesh, in the world, in the order that makes its normal point out.
+    std::array<Vec3f, 3> face(std::uint32_t number) const;
     bool passes(std::size_t particle) const { return !passes_.empty() && passes_[particle] != 0; }
     bool has_inside() const { return map_.border.empty(); }
 
@@ -34,6 +37,8 @@ class ModelPairs {
     ExactMapView map_;
     FrameChange local_, body_;
     TriangleMesh in_body_;
+    std::vector<std::uint32_t> in_map_; ///< [number in the model's mesh] the index of the face in the map
+    bool is_mirrored_;
     std::vector<std::uint8_t> passes_;
 };
 

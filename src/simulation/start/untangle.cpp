@@ -1,46 +1,162 @@
 #include "simulation/start/untangle.hpp"
 
-#include "simulation/start/part_from_models.hpp"
-#include "simulation/start/part_layers.hpp"
+#include "simulation/elastic_parts.hpp"
+#include "simulation/jakobsen/collider_now.hpp"
+#include "simulation/start/layer_separations.hpp"
+#include "simulation/start/model_separations.hpp"
+#include "simulation/start/thresholds.hpp"
 #include "simulation/surfaces/edge_lengths.hpp"
 #include "simulation/surfaces/elements.hpp"
+#include "simulation/surfaces/model_mesh.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
+#include <limits>
+#include <numeric>
+#include <span>
+#include <utility>
 
 namespace echinus {
 
 namespace {
 
-/// Layers that are separated may be moved into a model, and the reverse.
-constexpr int kMostTurns = 4;
+constexpr std::size_t kUnknown = std::numeric_limits<std::size_t>::max();
 
-/// The gap by which layers are separated, as a share of their thickness, and its limits as shares of the mean
-/// edge length. Contact does the rest.
-constexpr float kGapInThicknesses = 0.5F;
-constexpr float kLeastGap = 1.0F / 32;
-constexpr float kMostGap = 1.0F / 8;
+/// The positions with the fewest intersections found.
+struct Untangled {
+    std::vector<Vec3f> positions;
+    std::size_t tangle_count = kUnknown; ///< intersecting pairs, touching faces and particles inside
+};
+
+/// An attempt to separate a deformable from models and from itself: a material that starts at rest and is
+/// pulled apart by separations, round by round.
+class Attempt {
+  public:
+    Attempt(const Deformable& deformable, const std::vector<Collider>& colliders,
+            const SimulationOptions& options, ExitSide side)
+        : deformable_(deformable), options_(options), elements_(elements_of(deformable)),
+          step_(elastic_parts(deformable, options)), motion_(deformable.particle_count()),
+          is_held_(deformable.particle_count()), no_forces_(deformable.particle_count()),
+          workers_(options.thread_count), edge_length_(mean_edge_length(elements_, deformable.positions)) {
+        for (std::size_t i = 0; i < is_held_.size(); ++i)
+            is_held_[i] = deformable.inverse_masses[i] == 0 ? 1 : 0;
+        for (std::size_t c = 0; c < colliders.size(); ++c)
+            if (map_of_surface(colliders[c]) != nullptr)
+                models_.emplace_back(elements_, colliders[c], let_through(deformable, c),
+                                     ColliderNow(colliders[c], colliders[c].pose, options).thickness,
+                                     edge_length_, side);
+        find_stiffnesses();
+    }
+
+    Untangled run() {
+        const Workers::Session session(workers_);
+        Untangled best;
+        double stiffness = 1, least_depths = std::numeric_limits<double>::infinity();
+        int idle_rounds = 0;
+        for (int round = 0; round < threshold::kMostRounds; ++round) {
+            Separations separations;
+            const std::size_t count = find(separations.all);
+            const bool is_fewer = count < best.tangle_count;
+            const bool is_nearer = depths() < threshold::kNearer * least_depths;
+            if (is_nearer) least_depths = depths();
+            if (is_fewer) best = {deformable_.positions, count};
+            idle_rounds = is_fewer || is_nearer ? 0 : idle_rounds + 1;
+            if (count == 0 || idle_rounds > threshold::kPatience) break;
+            if (count > threshold::kFarWorse * best.tangle_count + threshold::kFewPairs) break;
+            if (idle_rounds > 0)
+                stiffness = std::min(stiffness * threshold::kStiffening, threshold::kMostStiffness);
+            if (idle_rounds > 0 && idle_rounds % threshold::kYieldAfter == 0) yield();
+            move(separations, stiffness);
+        }
+        return best;
+    }
+
+  private:
+    void find_stiffnesses() {
+        load_places();
+        stiffnesses_ = step_.stiffnesses(motion_.places, workers_);
+        const std::span<const double> masses = step_.masses();
+        const double stiffness = std::accumulate(stiffnesses_.begin(), stiffnesses_.end(), 0.0);
+        const double mass = std::accumulate(masses.begin(), masses.end(), 0.0);
+        if (stiffness > 0) seconds_ = std::sqrt(mass / (threshold::kInertiaShare * stiffness));
+        for (std::size_t i = 0; i < stiffnesses_.size(); ++i)
+            stiffnesses_[i] += masses[i] / (seconds_ * seconds_);
+    }
+
+    void load_places() {
+        for (std::size_t i = 0; i < motion_.particle_count(); ++i)
+            motion_.places[i] = Vec3d(deformable_.positions[i]);
+    }
+
+    /// @return the number of tangles
+    std::size_t find(std::vector<Separation>& separations) {
+        const std::span<const Vec3f> positions = deformable_.positions;
+        std::size_t count = 0;
+        for (ModelSeparations& model : models_) count += model.add(positions, separations);
+        if (options_.layers_collide())
+            count += add_layer_separations(elements_, positions, layer_gap(), edge_length_, separations);
+        return count;
+    }
+
+    float layer_gap() const {
+        const auto thickness =
+            static_cast<float>(options_.newton().self_thickness.value_or(*options_.thickness));
+        return std::clamp(threshold::kGapInThicknesses * thickness, threshold::kLeastLayerGap * edge_length_,
+                          threshold::kMostLayerGap * edge_length_);
+    }
+
+    double depths() const {
+        double sum = 0;
+        for (const ModelSeparations& model : models_) sum += model.depths();
+        return sum;
+    }
+
+    /// Makes the present shape the shape at rest.
+    void yield() {
+        deformable_.rest_positions = deformable_.positions;
+        step_ = ImplicitStep(elastic_parts(deformable_, options_));
+    }
+
+    /// @param stiffness  of the separations, in stiffnesses of the material
+    void move(Separations& separations, double stiffness) {
+        for (Separation& separation : separations.all)
+            for (std::size_t k = 0; k < Separation::kMostParts; ++k)
+                separation.stiffness +=
+                    stiffness * std::abs(separation.weights[k]) * stiffnesses_[separation.particles[k]];
+        load_places();
+        step_.begin(motion_, no_forces_, is_held_, seconds_);
+        std::vector<Vec3d> places = motion_.places;
+        step_.solve(places, &separations, {.newton_steps = threshold::kStepsPerRound}, workers_);
+        std::transform(places.begin(), places.end(), deformable_.positions.begin(),
+                       [](const Vec3d& place) { return Vec3f(place); });
+    }
+
+    Deformable deformable_;
+    const SimulationOptions& options_;
+    Elements elements_;
+    ImplicitStep step_;
+    Motion motion_; ///< without velocities
+    std::vector<std::uint8_t> is_held_;
+    std::vector<Vec3d> no_forces_;
+    Workers workers_;
+    float edge_length_;
+    std::vector<ModelSeparations> models_;
+    std::vector<double> stiffnesses_; ///< [particle] of the material and of inertia
+    double seconds_ = 1;              ///< the duration of a step
+};
 
 } // namespace
 
 void untangle(Deformable& deformable, const std::vector<Collider>& colliders,
               const SimulationOptions& options) {
-    const Elements elements = elements_of(deformable);
-    std::vector<Vec3f> positions = deformable.positions;
-    const float edge_length = mean_edge_length(elements, positions);
-    const auto thickness = static_cast<float>(options.newton().self_thickness.value_or(*options.thickness));
-    const float gap =
-        std::clamp(kGapInThicknesses * thickness, kLeastGap * edge_length, kMostGap * edge_length);
-    for (int turn = 0; turn < kMostTurns; ++turn) {
-        const bool left_models = part_from_models(elements, deformable, colliders, options, positions);
-        const bool face_moves = turn % 2 != 0; // moving the particle instead has led into a model
-        const bool left_itself = options.layers_collide() &&
-                                 part_layers(elements, deformable.inverse_masses, gap, face_moves, positions);
-        if (!left_models && !left_itself) break;
+    Untangled best;
+    for (const ExitSide side : {ExitSide::Nearest, ExitSide::Front, ExitSide::Back}) {
+        Untangled found = Attempt(deformable, colliders, options, side).run();
+        if (found.tangle_count < best.tangle_count) best = std::move(found);
+        if (best.tangle_count == 0 || colliders.empty()) break;
     }
-    for (std::size_t v = 0; v < positions.size(); ++v) {
-        deformable.positions[v] = positions[v];
-    }
+    deformable.positions = std::move(best.positions);
 }
 
 } // namespace echinus

@@ -1,0 +1,173 @@
+#include "simulation/start/model_separations.hpp"
+
+#include "simulation/start/thresholds.hpp"
+#include "simulation/surfaces/model_mesh.hpp"
+
+#include <echinus/exact_map.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+namespace echinus {
+
+namespace {
+
+Vec3d unit_or_zero(const Vec3d& v) {
+    const double size = length(v);
+    return size > 0 ? v * (1 / size) : Vec3d{};
+}
+
+Vec3d area_normal(const std::array<Vec3f, 3>& t) {
+    return cross(Vec3d(t[1]) - Vec3d(t[0]), Vec3d(t[2]) - Vec3d(t[0]));
+}
+
+float extent_of(const Collider& collider) {
+    const Vec3d& s = collider.scale;
+    const double scale = std::max({std::fabs(s.x), std::fabs(s.y), std::fabs(s.z)});
+    return static_cast<float>(3 * double{map_of_surface(collider)->view().radius} * scale);
+}
+
+TriangleMesh surface_of(const Elements& elements, std::span<const Vec3f> positions) {
+    TriangleMesh surface{{positions.begin(), positions.end()}, {}};
+    for (const Element& element : elements.all) surface.faces.push_back(element.vertices);
+    return surface;
+}
+
+} // namespace
+
+ModelSeparations::ModelSeparations(const Elements& elements, const Collider& collider,
+                                   std::vector<std::uint8_t> passes, float gap, float edge_length,
+                                   ExitSide side)
+    : elements_(elements), pairs_(collider, std::move(passes)),
+      collider_(with_map(collider, *map_of_surface(collider))), gap_(gap), edge_length_(edge_length),
+      extent_(extent_of(collider)), directions_(elements, side), inside_(elements.vertex_count()),
+      nearest_(elements.vertex_count()) {}
+
+std::size_t ModelSeparations::add(std::span<const Vec3f> positions, std::vector<Separation>& separations) {
+    const std::size_t inside_count = find_inside(positions);
+    add_particles(positions, separations);
+    const ModelPairs::Found found = pairs_.with(surface_of(elements_, positions));
+    lift_faces(positions, found, separations);
+    return inside_count + found.intersecting.size() + found.touching.size();
+}
+
+/// An open surface has no inside.
+std::size_t ModelSeparations::find_inside(std::span<const Vec3f> positions) {
+    if (!pairs_.has_inside()) return 0;
+    contains_batch(collider_, positions, inside_);
+    const float guarded = threshold::kGuarded * edge_length_;
+    std::size_t count = 0;
+    for (std::size_t v = 0; v < positions.size(); ++v) {
+        nearest_[v] = {};
+        if (pairs_.passes(v)) {
+            inside_[v] = 0;
+            continue;
+        }
+        count += inside_[v];
+        nearest_[v] =
+            inside_[v] != 0 ? contact(collider_, positions[v]) : contact(collider_, positions[v], guarded);
+    }
+    directions_.choose(positions, inside_, nearest_);
+    return count;
+}
+
+/// Each particle inside moves to the nearest point of the surface, or to the one in the direction that it
+/// ought to take. Those outside that are near the surface stay there.
+void ModelSeparations::add_particles(std::span<const Vec3f> positions, std::vector<Separation>& separations) {
+    const double stride = double{threshold::kDepthStride} * double{edge_length_};
+    depths_ = 0;
+    for (std::uint32_t v = 0; v < positions.size(); ++v) {
+        if (!nearest_[v].found()) continue;
+        Vec3f normal = nearest_[v].normal, goal = nearest_[v].point + normal * gap_;
+        if (inside_[v] != 0 && dot(directions_.of(v), normal) < threshold::kOpposed)
+            if (const std::optional<Vec3f> exit = exit_along(positions[v], directions_.of(v))) {
+                normal = directions_.of(v);
+                goal = *exit;
+            }
+        const Vec3d direction(normal);
+        const double now = dot(direction, Vec3d(positions[v])), least = dot(direction, Vec3d(goal));
+        depths_ += std::max(least - now, 0.0);
+        separations.push_back({{v}, {1}, direction, std::min(least, now + stride), 0});
+    }
+}
+
+/// The first point outside on a straight path, at the gap.
+std::optional<Vec3f> ModelSeparations::exit_along(Vec3f from, const Vec3f& direction) const {
+    for (int i = 0; i < threshold::kMostSurfacesCrossed; ++i) {
+        const SweepHit hit = sweep(collider_, collider_.pose, from, from + direction * extent_);
+        if (!hit.found()) break;
+        from = hit.point + direction * gap_;
+        if (!contains(collider_, from)) return from;
+    }
+    return std::nullopt;
+}
+
+/// Lifts each face without a corner inside beyond the parts of the model that come through it.
+void ModelSeparations::lift_faces(std::span<const Vec3f> positions, const ModelPairs::Found& found,
+                                  std::vector<Separation>& separations) const {
+    constexpr double kLow = -std::numeric_limits<double>::infinity();
+    const std::vector<Vec3d> directions = lift_directions(positions, found);
+    for (std::size_t i = 0; i < found.intersecting.size();) {
+        const std::uint32_t element = found.intersecting[i].a;
+        double height = kLow;
+        for (; i < found.intersecting.size() && found.intersecting[i].a == element; ++i)
+            for (const Vec3f& corner : pairs_.face(found.intersecting[i].b))
+                height = std::max(height, dot(directions[element], Vec3d(corner)));
+        const auto& [a, b, c] = elements_.all[element].vertices;
+        if (inside_[a] == 0 && inside_[b] == 0 && inside_[c] == 0)
+            separations.push_back(lift(positions, element, directions[element], height));
+    }
+    for (const std::uint32_t element : found.touching)
+        separations.push_back(lift(positions, element, directions[element], kLow));
+}
+
+/// @param height  in the direction, of that which the middle of the element has to pass
+Separation ModelSeparations::lift(std::span<const Vec3f> positions, std::uint32_t element,
+                                  const Vec3d& direction, double height) const {
+    Separation separation{{}, {}, direction, 0, 0};
+    double now = 0;
+    for (std::size_t k = 0; k < 3; ++k) {
+        separation.particles[k] = elements_.all[element].vertices[k];
+        separation.weights[k] = 1.0 / 3;
+        now += dot(direction, Vec3d(positions[separation.particles[k]])) / 3;
+    }
+    const double stride = double{threshold::kStride} * double{edge_length_};
+    separation.least = now + std::min(std::max(height - now, 0.0) + double{gap_}, stride);
+    return separation;
+}
+
+/// [element] The mean normal of the model's faces that intersect an element and its neighbours, weighted by
+/// their areas: the normals around a tip that comes through a face add up to its axis.
+std::vector<Vec3d> ModelSeparations::lift_directions(std::span<const Vec3f> positions,
+                                                     const ModelPairs::Found& found) const {
+    std::vector<Vec3d> directions(elements_.all.size());
+    std::vector<std::uint32_t> lifted = found.touching;
+    for (const auto& [element, face] : found.intersecting) {
+        directions[element] += area_normal(pairs_.face(face));
+        if (lifted.empty() || lifted.back() != element) lifted.push_back(element);
+    }
+    for (const std::uint32_t element : found.touching) {
+        const auto& [a, b, c] = elements_.all[element].vertices;
+        const Vec3f middle = (positions[a] + positions[b] + positions[c]) * (1.0F / 3);
+        const float farthest = std::max(
+            {length(positions[a] - middle), length(positions[b] - middle), length(positions[c] - middle)});
+        directions[element] = Vec3d(contact(collider_, middle, farthest).normal);
+    }
+    for (const std::uint32_t element : lifted) directions[element] = unit_or_zero(directions[element]);
+    std::vector<Vec3d> sums(positions.size());
+    for (int i = 0; i < threshold::kSmoothingsOfLifts; ++i) {
+        std::fill(sums.begin(), sums.end(), Vec3d{});
+        for (const std::uint32_t element : lifted)
+            for (const std::uint32_t v : elements_.all[element].vertices) sums[v] += directions[element];
+        for (const std::uint32_t element : lifted) {
+            const auto& [a, b, c] = elements_.all[element].vertices;
+            directions[element] = unit_or_zero(sums[a] + sums[b] + sums[c]);
+        }
+    }
+    return directions;
+}
+
+} // namespace echinus
