@@ -19,7 +19,7 @@ inline constexpr double kNearer = 0.98;
 /// The factor by which the number of intersections may exceed the least one found, in addition to a number
 /// of pairs, before an attempt ends: it then makes everything worse.
 inline constexpr std::size_t kFarWorse = 4, kFewPairs = 256;
-/// The factor by which separations become stiffer in a round without progress, and the largest stiffness, in
+/// The factor by which openings become stiffer in a round without progress, and the largest stiffness, in
 /// stiffnesses of the material. A larger factor crumples the surface.
 inline constexpr double kStiffening = 1.03, kMostStiffness = 10;
 /// The resistance of inertia as a share of the material's stiffness. A smaller value lets whole parts move

@@ -2,8 +2,8 @@
 
 #include "simulation/elastic_parts.hpp"
 #include "simulation/jakobsen/collider_now.hpp"
-#include "simulation/start/layer_separations.hpp"
-#include "simulation/start/model_separations.hpp"
+#include "simulation/start/layer_openings.hpp"
+#include "simulation/start/model_openings.hpp"
 #include "simulation/start/thresholds.hpp"
 #include "simulation/surfaces/edge_lengths.hpp"
 #include "simulation/surfaces/elements.hpp"
@@ -30,7 +30,7 @@ struct Untangled {
 };
 
 /// An attempt to separate a deformable from models and from itself: a material that starts at rest and is
-/// pulled apart by separations, round by round.
+/// pulled apart round by round.
 class Attempt {
   public:
     Attempt(const Deformable& deformable, const std::vector<Collider>& colliders,
@@ -55,8 +55,8 @@ class Attempt {
         double stiffness = 1, least_depths = std::numeric_limits<double>::infinity();
         int idle_rounds = 0;
         for (int round = 0; round < threshold::kMostRounds; ++round) {
-            Separations separations;
-            const std::size_t count = find(separations.all);
+            Openings openings;
+            const std::size_t count = find(openings.all);
             const bool is_fewer = count < best.tangle_count;
             const bool is_nearer = depths() < threshold::kNearer * least_depths;
             if (is_nearer) least_depths = depths();
@@ -67,7 +67,7 @@ class Attempt {
             if (idle_rounds > 0)
                 stiffness = std::min(stiffness * threshold::kStiffening, threshold::kMostStiffness);
             if (idle_rounds > 0 && idle_rounds % threshold::kYieldAfter == 0) yield();
-            move(separations, stiffness);
+            move(openings, stiffness);
         }
         return best;
     }
@@ -90,12 +90,12 @@ class Attempt {
     }
 
     /// @return the number of tangles
-    std::size_t find(std::vector<Separation>& separations) {
+    std::size_t find(std::vector<Opening>& openings) {
         const std::span<const Vec3f> positions = deformable_.positions;
         std::size_t count = 0;
-        for (ModelSeparations& model : models_) count += model.add(positions, separations);
+        for (ModelOpenings& model : models_) count += model.add(positions, openings);
         if (options_.layers_collide())
-            count += add_layer_separations(elements_, positions, layer_gap(), edge_length_, separations);
+            count += add_layer_openings(elements_, positions, layer_gap(), edge_length_, openings);
         return count;
     }
 
@@ -108,7 +108,7 @@ class Attempt {
 
     double depths() const {
         double sum = 0;
-        for (const ModelSeparations& model : models_) sum += model.depths();
+        for (const ModelOpenings& model : models_) sum += model.depths();
         return sum;
     }
 
@@ -118,16 +118,16 @@ class Attempt {
         step_ = ImplicitStep(elastic_parts(deformable_, options_));
     }
 
-    /// @param stiffness  of the separations, in stiffnesses of the material
-    void move(Separations& separations, double stiffness) {
-        for (Separation& separation : separations.all)
-            for (std::size_t k = 0; k < Separation::kMostParts; ++k)
-                separation.stiffness +=
-                    stiffness * std::abs(separation.weights[k]) * stiffnesses_[separation.particles[k]];
+    /// @param stiffness  of what opens the gaps, in stiffnesses of the material
+    void move(Openings& openings, double stiffness) {
+        for (Opening& opening : openings.all)
+            for (std::size_t k = 0; k < Opening::kMostParts; ++k)
+                opening.stiffness +=
+                    stiffness * std::abs(opening.weights[k]) * stiffnesses_[opening.particles[k]];
         load_places();
         step_.begin(motion_, no_forces_, is_held_, seconds_);
         std::vector<Vec3d> places = motion_.places;
-        step_.solve(places, &separations, {.newton_steps = threshold::kStepsPerRound}, workers_);
+        step_.solve(places, &openings, {.newton_steps = threshold::kStepsPerRound}, workers_);
         std::transform(places.begin(), places.end(), deformable_.positions.begin(),
                        [](const Vec3d& place) { return Vec3f(place); });
     }
@@ -141,7 +141,7 @@ class Attempt {
     std::vector<Vec3d> no_forces_;
     Workers workers_;
     float edge_length_;
-    std::vector<ModelSeparations> models_;
+    std::vector<ModelOpenings> models_;
     std::vector<double> stiffnesses_; ///< [particle] of the material and of inertia
     double seconds_ = 1;              ///< the duration of a step
 };

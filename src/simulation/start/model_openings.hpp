@@ -2,7 +2,7 @@
 
 #include "simulation/start/exit_directions.hpp"
 #include "simulation/start/model_pairs.hpp"
-#include "simulation/start/separations.hpp"
+#include "simulation/start/openings.hpp"
 
 #include <echinus/simulation.hpp>
 
@@ -14,30 +14,30 @@
 
 namespace echinus {
 
-/// Finds the separations that move a deformable out of one model: those of particles inside, and those of
+/// Finds the gaps to be opened so that a deformable leaves one model: those of particles inside, and those of
 /// faces that intersect the model although no corner is inside.
-class ModelSeparations {
+class ModelOpenings {
   public:
     /// @param passes  [particle] 1 for particles that the collider lets through, or empty
     /// @param gap     the distance that particles keep from the model
     /// @param edge_length  the mean edge length of the deformable
     /// @pre the collider has an exact map
-    ModelSeparations(const Elements& elements, const Collider& collider, std::vector<std::uint8_t> passes,
-                     float gap, float edge_length, ExitSide side);
+    ModelOpenings(const Elements& elements, const Collider& collider, std::vector<std::uint8_t> passes,
+                  float gap, float edge_length, ExitSide side);
 
     /// @return the number of intersecting pairs, touching faces and particles inside
-    std::size_t add(std::span<const Vec3f> positions, std::vector<Separation>& separations);
+    std::size_t add(std::span<const Vec3f> positions, std::vector<Opening>& openings);
     /// The sum of the distances by which particles were inside in add().
     double depths() const { return depths_; }
 
   private:
     std::size_t find_inside(std::span<const Vec3f> positions);
-    void add_particles(std::span<const Vec3f> positions, std::vector<Separation>& separations);
+    void add_particles(std::span<const Vec3f> positions, std::vector<Opening>& openings);
     std::optional<Vec3f> exit_along(Vec3f from, const Vec3f& direction) const;
     void lift_faces(std::span<const Vec3f> positions, const ModelPairs::Found& found,
-                    std::vector<Separation>& separations) const;
-    Separation lift(std::span<const Vec3f> positions, std::uint32_t element, const Vec3d& direction,
-                    double height) const;
+                    std::vector<Opening>& openings) const;
+    Opening lift(std::span<const Vec3f> positions, std::uint32_t element, const Vec3d& direction,
+                 double height) const;
     std::vector<Vec3d> lift_directions(std::span<const Vec3f> positions,
                                        const ModelPairs::Found& found) const;
 

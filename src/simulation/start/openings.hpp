@@ -11,7 +11,7 @@ namespace echinus {
 
 /// A gap to be opened between parts of a deformable, or between a part and a model that stays: it is linear
 /// in the positions.
-struct Separation {
+struct Opening {
     /// The most particles that one gap can depend on: those of an edge and a face.
     static constexpr std::size_t kMostParts = 5;
 
@@ -22,10 +22,10 @@ struct Separation {
     double stiffness = 0; ///< force / length
 };
 
-/// The energy of separations: stiffness / 2 times the square of the missing part of each gap.
-class Separations : public ContactEnergy {
+/// The energy of openings: stiffness / 2 times the square of the missing part of each gap.
+class Openings : public ContactEnergy {
   public:
-    std::vector<Separation> all;
+    std::vector<Opening> all;
 
     double energy(Places places, const Workers& workers) const override;
     void add_derivatives(Places places, std::span<Vec3d> gradient, BlockMatrix* hessian,

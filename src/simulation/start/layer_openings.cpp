@@ -1,4 +1,4 @@
-#include "simulation/start/layer_separations.hpp"
+#include "simulation/start/layer_openings.hpp"
 
 #include "simulation/start/intersection_curves.hpp"
 #include "simulation/start/thresholds.hpp"
@@ -56,17 +56,17 @@ class CrossingGeometry {
         return gradient;
     }
 
-    /// The separation that moves the edge relative to the face, both at the point where they cross.
-    Separation separation(const Vec3d& direction, double distance) const {
-        Separation separation{{edge_[0], edge_[1]}, {1 - share_, share_}, direction, 0, 0};
+    /// The opening that moves the edge relative to the face, both at the point where they cross.
+    Opening opening(const Vec3d& direction, double distance) const {
+        Opening opening{{edge_[0], edge_[1]}, {1 - share_, share_}, direction, 0, 0};
         double now = dot(direction, point_);
         for (std::size_t k = 0; k < 3; ++k) {
-            separation.particles[2 + k] = face_.vertices[k];
-            separation.weights[2 + k] = -face_weights_[k];
+            opening.particles[2 + k] = face_.vertices[k];
+            opening.weights[2 + k] = -face_weights_[k];
             now -= face_weights_[k] * dot(direction, at(face_.vertices[k]));
         }
-        separation.least = now + distance;
-        return separation;
+        opening.least = now + distance;
+        return opening;
     }
 
   private:
@@ -110,8 +110,8 @@ class CrossingGeometry {
 
 } // namespace
 
-std::size_t add_layer_separations(const Elements& elements, std::span<const Vec3f> positions, float gap,
-                                  float edge_length, std::vector<Separation>& separations) {
+std::size_t add_layer_openings(const Elements& elements, std::span<const Vec3f> positions, float gap,
+                               float edge_length, std::vector<Opening>& openings) {
     TriangleMesh mesh{{positions.begin(), positions.end()}, {}};
     for (const Element& element : elements.all) mesh.faces.push_back(element.vertices);
     const std::vector<FacePair> pairs = self_intersecting_pairs(mesh);
@@ -127,12 +127,11 @@ std::size_t add_layer_separations(const Elements& elements, std::span<const Vec3
                 const Vec3d shortening = geometry.shortening();
                 const double size = length(shortening);
                 if (size < threshold::kLeastGradient) continue;
-                separations.push_back(
-                    geometry.separation(shortening * (1 / size), stride * std::min(size, 1.0)));
+                openings.push_back(geometry.opening(shortening * (1 / size), stride * std::min(size, 1.0)));
             } else {
                 const auto& [from, to] = of_p < of_q ? Edge{p, q} : Edge{q, p};
-                separations.push_back(geometry.separation(
-                    geometry.towards(to), std::min(geometry.distance(from) + double{gap}, stride)));
+                openings.push_back(geometry.opening(geometry.towards(to),
+                                                    std::min(geometry.distance(from) + double{gap}, stride)));
             }
         }
     }

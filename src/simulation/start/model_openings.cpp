@@ -1,4 +1,4 @@
-#include "simulation/start/model_separations.hpp"
+#include "simulation/start/model_openings.hpp"
 
 #include "simulation/start/thresholds.hpp"
 #include "simulation/surfaces/model_mesh.hpp"
@@ -38,24 +38,23 @@ TriangleMesh surface_of(const Elements& elements, std::span<const Vec3f> positio
 
 } // namespace
 
-ModelSeparations::ModelSeparations(const Elements& elements, const Collider& collider,
-                                   std::vector<std::uint8_t> passes, float gap, float edge_length,
-                                   ExitSide side)
+ModelOpenings::ModelOpenings(const Elements& elements, const Collider& collider,
+                             std::vector<std::uint8_t> passes, float gap, float edge_length, ExitSide side)
     : elements_(elements), pairs_(collider, std::move(passes)),
       collider_(with_map(collider, *map_of_surface(collider))), gap_(gap), edge_length_(edge_length),
       extent_(extent_of(collider)), directions_(elements, side), inside_(elements.vertex_count()),
       nearest_(elements.vertex_count()) {}
 
-std::size_t ModelSeparations::add(std::span<const Vec3f> positions, std::vector<Separation>& separations) {
+std::size_t ModelOpenings::add(std::span<const Vec3f> positions, std::vector<Opening>& openings) {
     const std::size_t inside_count = find_inside(positions);
-    add_particles(positions, separations);
+    add_particles(positions, openings);
     const ModelPairs::Found found = pairs_.with(surface_of(elements_, positions));
-    lift_faces(positions, found, separations);
+    lift_faces(positions, found, openings);
     return inside_count + found.intersecting.size() + found.touching.size();
 }
 
 /// An open surface has no inside.
-std::size_t ModelSeparations::find_inside(std::span<const Vec3f> positions) {
+std::size_t ModelOpenings::find_inside(std::span<const Vec3f> positions) {
     if (!pairs_.has_inside()) return 0;
     contains_batch(collider_, positions, inside_);
     const float guarded = threshold::kGuarded * edge_length_;
@@ -76,7 +75,7 @@ std::size_t ModelSeparations::find_inside(std::span<const Vec3f> positions) {
 
 /// Each particle inside moves to the nearest point of the surface, or to the one in the direction that it
 /// ought to take. Those outside that are near the surface stay there.
-void ModelSeparations::add_particles(std::span<const Vec3f> positions, std::vector<Separation>& separations) {
+void ModelOpenings::add_particles(std::span<const Vec3f> positions, std::vector<Opening>& openings) {
     const double stride = double{threshold::kDepthStride} * double{edge_length_};
     depths_ = 0;
     for (std::uint32_t v = 0; v < positions.size(); ++v) {
@@ -90,12 +89,12 @@ void ModelSeparations::add_particles(std::span<const Vec3f> positions, std::vect
         const Vec3d direction(normal);
         const double now = dot(direction, Vec3d(positions[v])), least = dot(direction, Vec3d(goal));
         depths_ += std::max(least - now, 0.0);
-        separations.push_back({{v}, {1}, direction, std::min(least, now + stride), 0});
+        openings.push_back({{v}, {1}, direction, std::min(least, now + stride), 0});
     }
 }
 
 /// The first point outside on a straight path, at the gap.
-std::optional<Vec3f> ModelSeparations::exit_along(Vec3f from, const Vec3f& direction) const {
+std::optional<Vec3f> ModelOpenings::exit_along(Vec3f from, const Vec3f& direction) const {
     for (int i = 0; i < threshold::kMostSurfacesCrossed; ++i) {
         const SweepHit hit = sweep(collider_, collider_.pose, from, from + direction * extent_);
         if (!hit.found()) break;
@@ -106,8 +105,8 @@ std::optional<Vec3f> ModelSeparations::exit_along(Vec3f from, const Vec3f& direc
 }
 
 /// Lifts each face without a corner inside beyond the parts of the model that come through it.
-void ModelSeparations::lift_faces(std::span<const Vec3f> positions, const ModelPairs::Found& found,
-                                  std::vector<Separation>& separations) const {
+void ModelOpenings::lift_faces(std::span<const Vec3f> positions, const ModelPairs::Found& found,
+                               std::vector<Opening>& openings) const {
     constexpr double kLow = -std::numeric_limits<double>::infinity();
     const std::vector<Vec3d> directions = lift_directions(positions, found);
     for (std::size_t i = 0; i < found.intersecting.size();) {
@@ -118,31 +117,31 @@ void ModelSeparations::lift_faces(std::span<const Vec3f> positions, const ModelP
                 height = std::max(height, dot(directions[element], Vec3d(corner)));
         const auto& [a, b, c] = elements_.all[element].vertices;
         if (inside_[a] == 0 && inside_[b] == 0 && inside_[c] == 0)
-            separations.push_back(lift(positions, element, directions[element], height));
+            openings.push_back(lift(positions, element, directions[element], height));
     }
     for (const std::uint32_t element : found.touching)
-        separations.push_back(lift(positions, element, directions[element], kLow));
+        openings.push_back(lift(positions, element, directions[element], kLow));
 }
 
 /// @param height  in the direction, of that which the middle of the element has to pass
-Separation ModelSeparations::lift(std::span<const Vec3f> positions, std::uint32_t element,
-                                  const Vec3d& direction, double height) const {
-    Separation separation{{}, {}, direction, 0, 0};
+Opening ModelOpenings::lift(std::span<const Vec3f> positions, std::uint32_t element, const Vec3d& direction,
+                            double height) const {
+    Opening opening{{}, {}, direction, 0, 0};
     double now = 0;
     for (std::size_t k = 0; k < 3; ++k) {
-        separation.particles[k] = elements_.all[element].vertices[k];
-        separation.weights[k] = 1.0 / 3;
-        now += dot(direction, Vec3d(positions[separation.particles[k]])) / 3;
+        opening.particles[k] = elements_.all[element].vertices[k];
+        opening.weights[k] = 1.0 / 3;
+        now += dot(direction, Vec3d(positions[opening.particles[k]])) / 3;
     }
     const double stride = double{threshold::kStride} * double{edge_length_};
-    separation.least = now + std::min(std::max(height - now, 0.0) + double{gap_}, stride);
-    return separation;
+    opening.least = now + std::min(std::max(height - now, 0.0) + double{gap_}, stride);
+    return opening;
 }
 
 /// [element] The mean normal of the model's faces that intersect an element and its neighbours, weighted by
 /// their areas: the normals around a tip that comes through a face add up to its axis.
-std::vector<Vec3d> ModelSeparations::lift_directions(std::span<const Vec3f> positions,
-                                                     const ModelPairs::Found& found) const {
+std::vector<Vec3d> ModelOpenings::lift_directions(std::span<const Vec3f> positions,
+                                                  const ModelPairs::Found& found) const {
     std::vector<Vec3d> directions(elements_.all.size());
     std::vector<std::uint32_t> lifted = found.touching;
     for (const auto& [element, face] : found.intersecting) {

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "simulation/start/separations.hpp"
+#include "simulation/start/openings.hpp"
 #include "simulation/surfaces/elements.hpp"
 
 #include <echinus/geometry.hpp>
@@ -11,7 +11,7 @@
 
 namespace echinus {
 
-/// Adds the separations that move layers of a surface that intersect to one side of each other.
+/// Adds the gaps to be opened so that layers that intersect move to one side of each other.
 ///
 /// If the curve along which they intersect cuts a layer into two pieces, the smaller piece has come through
 /// the other layer and moves back (global intersection analysis: Baraff, Witkin and Kass 2003, section 4).
@@ -20,7 +20,7 @@ namespace echinus {
 /// @param gap  the distance to be opened
 /// @param edge_length  the mean edge length of the surface
 /// @return the number of intersecting pairs
-std::size_t add_layer_separations(const Elements& elements, std::span<const Vec3f> positions, float gap,
-                                  float edge_length, std::vector<Separation>& separations);
+std::size_t add_layer_openings(const Elements& elements, std::span<const Vec3f> positions, float gap,
+                               float edge_length, std::vector<Opening>& openings);
 
 } // namespace echinus
