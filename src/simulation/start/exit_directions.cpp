@@ -1,6 +1,7 @@
 #include "simulation/start/exit_directions.hpp"
 
 #include "geometry/union_find.hpp"
+#include "simulation/start/openings.hpp"
 #include "simulation/start/thresholds.hpp"
 
 #include <algorithm>
@@ -10,11 +11,6 @@
 namespace echinus {
 
 namespace {
-
-Vec3f unit_or_zero(const Vec3f& v) {
-    const float size = length(v);
-    return size > 0 ? v * (1 / size) : Vec3f{};
-}
 
 /// The mean cosine between the normals of the surface and of the nearest points.
 double agreement(std::span<const Vec3f> normals, std::span<const Contact> nearest) {
@@ -58,7 +54,7 @@ std::vector<Vec3f> ExitDirections::smooth_normals(std::span<const Vec3f> positio
             sums[p] += normals[q];
             sums[q] += normals[p];
         }
-        std::transform(sums.begin(), sums.end(), normals.begin(), unit_or_zero);
+        std::transform(sums.begin(), sums.end(), normals.begin(), unit_or_zero<float>);
     }
     return normals;
 }

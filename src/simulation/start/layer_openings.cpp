@@ -14,11 +14,6 @@ namespace echinus {
 
 namespace {
 
-Vec3d unit_or_zero(const Vec3d& v) {
-    const double size = length(v);
-    return size > 0 ? v * (1 / size) : Vec3d{};
-}
-
 /// An edge that passes through a face.
 class CrossingGeometry {
   public:
@@ -112,9 +107,7 @@ class CrossingGeometry {
 
 std::size_t add_layer_openings(const Elements& elements, std::span<const Vec3f> positions, float gap,
                                float edge_length, std::vector<Opening>& openings) {
-    TriangleMesh mesh{{positions.begin(), positions.end()}, {}};
-    for (const Element& element : elements.all) mesh.faces.push_back(element.vertices);
-    const std::vector<FacePair> pairs = self_intersecting_pairs(mesh);
+    const std::vector<FacePair> pairs = self_intersecting_pairs(surface_of(elements, positions));
     const double stride = double{threshold::kStride} * double{edge_length};
     CutPieces pieces(elements);
     for (const std::vector<Crossing>& curve : intersection_curves(elements, positions, pairs)) {

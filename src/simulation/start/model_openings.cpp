@@ -15,11 +15,6 @@ namespace echinus {
 
 namespace {
 
-Vec3d unit_or_zero(const Vec3d& v) {
-    const double size = length(v);
-    return size > 0 ? v * (1 / size) : Vec3d{};
-}
-
 Vec3d area_normal(const std::array<Vec3f, 3>& t) {
     return cross(Vec3d(t[1]) - Vec3d(t[0]), Vec3d(t[2]) - Vec3d(t[0]));
 }
@@ -28,12 +23,6 @@ float extent_of(const Collider& collider) {
     const Vec3d& s = collider.scale;
     const double scale = std::max({std::fabs(s.x), std::fabs(s.y), std::fabs(s.z)});
     return static_cast<float>(3 * double{map_of_surface(collider)->view().radius} * scale);
-}
-
-TriangleMesh surface_of(const Elements& elements, std::span<const Vec3f> positions) {
-    TriangleMesh surface{{positions.begin(), positions.end()}, {}};
-    for (const Element& element : elements.all) surface.faces.push_back(element.vertices);
-    return surface;
 }
 
 } // namespace

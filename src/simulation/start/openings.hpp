@@ -9,6 +9,12 @@
 
 namespace echinus {
 
+template <typename T>
+Vec3<T> unit_or_zero(const Vec3<T>& v) {
+    const T size = length(v);
+    return size > 0 ? v * (1 / size) : Vec3<T>{};
+}
+
 /// A gap to be opened between parts of a deformable, or between a part and a model that stays: it is linear
 /// in the positions.
 struct Opening {

@@ -34,13 +34,6 @@ std::string remedy(const SimulationOptions& options, const char* way, bool pinne
            way;
 }
 
-/// The faces of the deformable, followed by its edges and vertices as faces without area.
-TriangleMesh surface_of(const Deformable& deformable, const Elements& elements) {
-    TriangleMesh surface{deformable.positions, {}};
-    for (const Element& element : elements.all) surface.faces.push_back(element.vertices);
-    return surface;
-}
-
 std::string name_of(const Elements& elements, std::uint32_t number) {
     const auto& [a, b, c] = elements.all[number].vertices;
     if (elements.all[number].is_face()) return "face " + std::to_string(number);
@@ -127,7 +120,7 @@ void require_apart(const Deformable& deformable, const std::vector<Collider>& co
     const Elements elements = elements_of(deformable);
     // This comes first, because with such coarse floats faces also intersect.
     if (options.layers_collide()) require_resolved(deformable, elements);
-    const TriangleMesh surface = surface_of(deformable, elements);
+    const TriangleMesh surface = surface_of(elements, deformable.positions);
     for (std::size_t i = 0; i < colliders.size(); ++i)
         if (map_of_surface(colliders[i]) != nullptr)
             require_apart(deformable, surface, elements, let_through(deformable, i), colliders[i], options,
@@ -145,8 +138,7 @@ void require_no_meeting(const Deformable& deformable, std::span<const Vec3f> pla
                         const std::string& name) {
     const ExactMap* const map = map_of_surface(collider);
     if (map == nullptr) return;
-    TriangleMesh surface = surface_of(deformable, elements_of(deformable));
-    surface.vertices.assign(places.begin(), places.end());
+    const TriangleMesh surface = surface_of(elements_of(deformable), places);
     const ModelPairs pairs(collider, {passes.begin(), passes.end()});
     const auto [intersecting, touching] = pairs.with(surface);
     std::size_t inside_count = 0;

@@ -104,4 +104,10 @@ Elements elements_of(const Deformable& deformable, std::span<const std::uint8_t>
     return {deformable.particle_count(), faces, threads, inner};
 }
 
+TriangleMesh surface_of(const Elements& elements, std::span<const Vec3f> positions) {
+    TriangleMesh surface{{positions.begin(), positions.end()}, {}};
+    for (const Element& element : elements.all) surface.faces.push_back(element.vertices);
+    return surface;
+}
+
 } // namespace echinus

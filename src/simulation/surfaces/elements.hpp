@@ -56,4 +56,7 @@ struct Elements {
 /// @param passes  [particle_count] 1 for particles that a collider lets through, or empty
 Elements elements_of(const Deformable& deformable, std::span<const std::uint8_t> passes = {});
 
+/// The elements as a mesh: the faces, followed by the edges and vertices as faces without area.
+TriangleMesh surface_of(const Elements& elements, std::span<const Vec3f> positions);
+
 } // namespace echinus
