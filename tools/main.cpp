@@ -12,6 +12,7 @@ void add_commands(Program& program) {
     add_mesh_command(command);
     add_info_command(command);
     add_check_command(command);
+    add_part_command(command);
     add_build_command(command);
     add_query_command(command);
     add_simulate_command(command);

@@ -106,6 +106,30 @@ def test_intersections_are_listed_by_pairs():
     assert len(ech.intersecting_pairs(box, ech.Mesh(box.vertices + np.float32(3), box.faces))) == 0
 
 
+def test_a_surface_is_parted_from_models_and_from_itself():
+    line = np.linspace(-0.6, 0.6, 20, dtype=np.float32)
+    x, y = (grid.ravel() for grid in np.meshgrid(line, line))
+    corners = np.array([[20 * i + j, 20 * i + j + 1, 20 * (i + 1) + j] for i in range(19) for j in range(19)])
+    faces = np.concatenate([corners, np.stack([corners[:, 1], corners[:, 2] + 1, corners[:, 2]], axis=1)]).astype(np.uint32)
+    sheet = ech.Mesh(np.stack([x, y, 0.1 + 0 * x], axis=1), faces)
+    ball = ech.make_sphere(0.4, 24, 12)
+    assert len(ech.intersecting_pairs(sheet, ball)) > 0
+    parted = ech.part(sheet, [ball])
+    assert parted.is_apart and parted.mesh.vertices.shape == sheet.vertices.shape
+    assert not ech.ExactMap(ball).contains(parted.mesh.vertices).any()
+    assert len(ech.intersecting_pairs(parted.mesh, ball)) == len(ech.self_intersecting_pairs(parted.mesh)) == 0
+    assert parted.stretched_share < 0.02 and parted.largest_stretch < 0.1
+    pinned = np.zeros(400, bool)
+    pinned[190] = True  # inside the ball
+    held = ech.part(sheet, [ball], pinned=pinned)
+    assert not held.is_apart and 190 in held.inside
+    assert np.array_equal(held.mesh.vertices[190], sheet.vertices[190])
+    with pytest.raises(TypeError, match="pinned must be an array of booleans"):
+        ech.part(sheet, pinned=[190])
+    with pytest.raises(ech.Error, match="model 0: "):
+        ech.part(sheet, [ech.Mesh([[0, 0, 0]] * 3, [[0, 1, 2]])])
+
+
 def test_meshes_are_checked_for_what_intersects_along_which_curves_and_how_deep():
     ball = ech.make_sphere(1, 60, 30)
     moved = ech.Mesh(ball.vertices + np.float32([1.5, 0, 0]), ball.faces)

@@ -42,6 +42,7 @@ CALLS = [
     (ech.self_intersecting_pairs, {"mesh": MESH}),
     (ech.intersections, {"a": MESH, "b": MESH}),
     (ech.check, {"meshes": [MESH]}),
+    (ech.part, {"mesh": MESH, "models": []}),
     (ech.make_torus, {}),
     (ech.make_sphere, {}),
     (ech.make_box, {}),
@@ -178,7 +179,7 @@ def option_cases():
 def test_everything_public_is_called_below_the_way_it_suits():
     classes_of_answers = {
         "AnyMap", "BoundaryDistance", "CheckedMeshes", "ColliderState", "ContactPoints", "Contacts", "DistanceMapStatistics", "ErrorCode", "ExactMapStatistics", "Fault",
-        "Intersections", "Load", "MeshLike", "MeshReport", "Penetration", "RepairReport", "SimulationOptions", "SimulationProfile", "SweepHits", "TetrahedraFile",
+        "Intersections", "Load", "MeshLike", "MeshReport", "Parted", "Penetration", "RepairReport", "SimulationOptions", "SimulationProfile", "SweepHits", "TetrahedraFile",
         "Tetrahedralization", "TetrahedralReport",
     }  # fmt: skip
     not_of_python = {"available_instruction_sets", "instruction_set", "use_instruction_set", "__version__"}

@@ -359,4 +359,29 @@ inline TriangleMesh rumpled(TriangleMesh mesh, float size) {
     return mesh;
 }
 
+/// A Klein bottle, a surface that cannot exist without intersecting itself.
+inline TriangleMesh klein_bottle() {
+    constexpr std::uint32_t kAround = 36, kAcross = 16;
+    TriangleMesh bottle;
+    for (std::uint32_t i = 0; i < kAround; ++i)
+        for (std::uint32_t j = 0; j < kAcross; ++j) {
+            const double u = 2 * std::numbers::pi * i / kAround,
+                         v = 2 * std::numbers::pi * (j + 0.5) / kAcross;
+            const double out = 3 + std::cos(u / 2) * std::sin(v) - std::sin(u / 2) * std::sin(2 * v);
+            bottle.vertices.emplace_back(
+                Vec3d{out * std::cos(u), out * std::sin(u),
+                      std::sin(u / 2) * std::sin(v) + std::cos(u / 2) * std::sin(2 * v)});
+        }
+    const auto at = [](std::uint32_t i, std::uint32_t j) {
+        j %= kAcross;
+        return i < kAround ? i * kAcross + j : kAcross - 1 - j; // the end is joined to the start turned over
+    };
+    for (std::uint32_t i = 0; i < kAround; ++i)
+        for (std::uint32_t j = 0; j < kAcross; ++j) {
+            bottle.faces.push_back({at(i, j), at(i + 1, j), at(i, j + 1)});
+            bottle.faces.push_back({at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)});
+        }
+    return bottle;
+}
+
 } // namespace echinus::test

@@ -21,7 +21,8 @@ TEST_F(MainCommand, TellsTheExitStatusesInItsHelp) {
 
 TEST_F(MainCommand, RefusesAMissingOrUnknownCommandAsWrongUse) {
     expect_failure(2, "A command is required", {});
-    expect_failure(2, "there is no command 'frobnicate'; the commands are mesh, info, check, build, query",
+    expect_failure(2,
+                   "there is no command 'frobnicate'; the commands are mesh, info, check, part, build, query",
                    {"frobnicate", "x.obj"});
     expect_failure(2, "there is no command 'frobnicate'; the commands are mesh, map, moment, sheet",
                    {"render", "frobnicate"});

@@ -8,6 +8,7 @@
 void add_mesh_command(Command program);
 void add_info_command(Command program);
 void add_check_command(Command program);
+void add_part_command(Command program);
 void add_build_command(Command program);
 void add_query_command(Command program);
 void add_simulate_command(Command program);

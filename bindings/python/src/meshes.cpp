@@ -5,6 +5,7 @@
 
 #include <echinus/intersections.hpp>
 #include <echinus/mesh_io.hpp>
+#include <echinus/parting.hpp>
 
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
@@ -141,6 +142,26 @@ py::list check_meshes(const std::vector<std::pair<Vertices, Faces>>& given, int 
     return result;
 }
 
+using ThicknessAndPins = std::pair<std::optional<double>, std::vector<std::uint8_t>>;
+
+/// (mesh, own pairs, pairs with each model, vertices inside, stretched share, largest stretch)
+py::tuple part_mesh(const Vertices& vertices, const Faces& faces,
+                    const std::vector<std::pair<Vertices, Faces>>& given, const ThicknessAndPins& options,
+                    int threads) {
+    TriangleMesh surface = mesh_of(vertices, faces);
+    std::vector<TriangleMesh> models;
+    for (const auto& [model_vertices, model_faces] : given)
+        models.push_back(mesh_of(model_vertices, model_faces));
+    const PartOptions chosen{
+        .thickness = options.first, .pinned = options.second, .thread_count = thread_count(threads)};
+    const Parted parted = unlocked([&] { return part(surface, models, chosen); });
+    surface.vertices = parted.vertices;
+    py::list model_pairs;
+    for (const std::vector<FacePair>& pairs : parted.model_pairs) model_pairs.append(pair_array(pairs));
+    return py::make_tuple(arrays_of(std::move(surface)), pair_array(parted.own_pairs), py::tuple(model_pairs),
+                          py::array(py::cast(parted.inside)), parted.stretched_share, parted.largest_stretch);
+}
+
 } // namespace
 
 py::dict report_dict(const MeshReport& report, const Vec3d& origin) {
@@ -220,6 +241,7 @@ void bind_meshes(py::module_& module) {
         return intersections_dict(unlocked([&] { return self_intersections(mesh); }), mesh.origin);
     });
     module.def("check", check_meshes);
+    module.def("part", part_mesh);
     module.def("make_torus",
                [](double major, double minor, std::uint32_t major_segments, std::uint32_t minor_segments) {
                    return arrays_of(make_torus(major, minor, major_segments, minor_segments));

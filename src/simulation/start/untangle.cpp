@@ -12,6 +12,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <functional>
 #include <limits>
 #include <numeric>
 #include <span>
@@ -49,10 +50,11 @@ class Attempt {
         find_stiffnesses();
     }
 
-    Untangled run() {
+    Untangled run(const std::function<void(double share)>& progress) {
         const Workers::Session session(workers_);
         Untangled best;
         double stiffness = 1, least_depths = std::numeric_limits<double>::infinity();
+        std::size_t initial_count = 0;
         int idle_rounds = 0;
         for (int round = 0; round < threshold::kMostRounds; ++round) {
             Openings openings;
@@ -61,6 +63,9 @@ class Attempt {
             const bool is_nearer = depths() < threshold::kNearer * least_depths;
             if (is_nearer) least_depths = depths();
             if (is_fewer) best = {deformable_.positions, count};
+            if (round == 0) initial_count = std::max(count, std::size_t{1});
+            if (progress)
+                progress(1 - static_cast<double>(best.tangle_count) / static_cast<double>(initial_count));
             idle_rounds = is_fewer || is_nearer ? 0 : idle_rounds + 1;
             if (count == 0 || idle_rounds > threshold::kPatience) break;
             if (count > threshold::kFarWorse * best.tangle_count + threshold::kFewPairs) break;
@@ -148,15 +153,16 @@ class Attempt {
 
 } // namespace
 
-void untangle(Deformable& deformable, const std::vector<Collider>& colliders,
-              const SimulationOptions& options) {
+bool untangle(Deformable& deformable, const std::vector<Collider>& colliders,
+              const SimulationOptions& options, const std::function<void(double share)>& progress) {
     Untangled best;
     for (const ExitSide side : {ExitSide::Nearest, ExitSide::Front, ExitSide::Back}) {
-        Untangled found = Attempt(deformable, colliders, options, side).run();
+        Untangled found = Attempt(deformable, colliders, options, side).run(progress);
         if (found.tangle_count < best.tangle_count) best = std::move(found);
         if (best.tangle_count == 0 || colliders.empty()) break;
     }
     deformable.positions = std::move(best.positions);
+    return best.tangle_count == 0;
 }
 
 } // namespace echinus

@@ -3,6 +3,7 @@
 #include <echinus/collider.hpp>
 #include <echinus/simulation.hpp>
 
+#include <functional>
 #include <vector>
 
 namespace echinus {
@@ -12,7 +13,9 @@ namespace echinus {
 /// intersections. Pinned particles stay. Velocities do not change; if nothing intersects, neither do
 /// positions.
 /// @pre deformable, colliders and options are valid, surfaces collide, and the thickness is set
-void untangle(Deformable& deformable, const std::vector<Collider>& colliders,
-              const SimulationOptions& options);
+/// @param progress  receives the share of the initial intersections that are gone; or empty
+/// @return whether nothing intersects
+bool untangle(Deformable& deformable, const std::vector<Collider>& colliders,
+              const SimulationOptions& options, const std::function<void(double share)>& progress = {});
 
 } // namespace echinus

@@ -1,0 +1,151 @@
+#include "simulation/start/untangle.hpp"
+#include "simulation/start/validation.hpp"
+#include "simulation/surfaces/edge_lengths.hpp"
+#include "simulation/surfaces/elements.hpp"
+#include "simulation/surfaces/model_mesh.hpp"
+
+#include <echinus/error.hpp>
+#include <echinus/exact_map.hpp>
+#include <echinus/parting.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <utility>
+
+namespace echinus {
+
+namespace {
+
+/// The thickness, in mean edge lengths, that a parted surface keeps by default.
+constexpr double kDefaultThickness = 0.1;
+/// The largest number of frames in which the material contracts, and the largest displacement of a particle
+/// in a frame, in mean edge lengths, with which it counts as contracted.
+constexpr int kMostFrames = 30;
+constexpr double kContracted = 0.01;
+/// The share of the work that untangling takes in the progress.
+constexpr double kUntanglingShare = 0.8;
+/// The change of an edge's length, as a share of it, above which the edge counts as stretched.
+constexpr double kStretched = 0.05;
+
+SimulationOptions simulation_options(const PartOptions& options, double edge_length) {
+    SimulationOptions all;
+    all.gravity = {};
+    // The air is so thick that the material contracts without swinging.
+    all.solver = NewtonOptions{.material = options.material, .air_drag = 1 / all.time_step};
+    all.thickness = options.thickness.value_or(kDefaultThickness * edge_length);
+    all.thread_count = options.thread_count;
+    return all;
+}
+
+/// The surface in its own frame.
+Deformable deformable_of(TriangleMesh surface, std::span<const std::uint8_t> pinned) {
+    require_option(pinned.empty() || pinned.size() == surface.vertices.size(),
+                   "pinned has " + std::to_string(pinned.size()) + " entries; it needs one for each of the " +
+                       std::to_string(surface.vertices.size()) + " vertices, or none");
+    surface.origin = {};
+    Deformable deformable = make_cloth(surface, {});
+    for (std::size_t v = 0; v < pinned.size(); ++v)
+        if (pinned[v] != 0) deformable.inverse_masses[v] = 0;
+    deformable.rest_positions = deformable.positions;
+    return deformable;
+}
+
+std::vector<Collider> colliders_of(const TriangleMesh& surface, std::span<const TriangleMesh> models) {
+    std::vector<Collider> colliders;
+    for (std::size_t i = 0; i < models.size(); ++i) {
+        const std::string name = "model " + std::to_string(i);
+        if (models[i].origin != surface.origin)
+            throw Error(ErrorCode::InvalidMesh, name + ": the origin is not that of the surface; move the "
+                                                       "vertices to its frame first");
+        TriangleMesh model = models[i];
+        model.origin = {};
+        try {
+            colliders.push_back({.map = ExactMap::build(model)});
+        } catch (const Error& error) {
+            throw Error(error.code(), name + ": " + error.what());
+        }
+        colliders.back().name = name;
+    }
+    return colliders;
+}
+
+/// Lets the material contract without leaving what untangling has found.
+void contract(Deformable& deformable, const std::vector<Collider>& colliders,
+              const SimulationOptions& options, double edge_length, const PartOptions& part_options) {
+    Simulation simulation(deformable, colliders, options);
+    for (int frame = 0; frame < kMostFrames; ++frame) {
+        if (part_options.progress)
+            part_options.progress(kUntanglingShare + (1 - kUntanglingShare) * frame / kMostFrames);
+        simulation.step();
+        if (simulation.largest_speed() * options.time_step < kContracted * edge_length) break;
+    }
+    deformable.positions = simulation.deformable().positions;
+}
+
+void find_remaining(const TriangleMesh& surface, std::span<const TriangleMesh> models,
+                    const std::vector<Collider>& colliders, unsigned thread_count, Parted& parted) {
+    TriangleMesh moved{parted.vertices, surface.faces, surface.origin};
+    parted.own_pairs = self_intersecting_pairs(moved);
+    for (const TriangleMesh& model : models) parted.model_pairs.push_back(intersecting_pairs(moved, model));
+    std::vector<std::uint8_t> is_used(moved.vertices.size()), inside(moved.vertices.size());
+    for (const Triangle& face : moved.faces)
+        for (const std::uint32_t v : face) is_used[v] = 1;
+    std::vector<std::uint8_t> in_any(moved.vertices.size());
+    for (const Collider& collider : colliders) {
+        if (!map_of_surface(collider)->view().border.empty()) continue; // open: no inside
+        contains_batch(collider, moved.vertices, inside, thread_count);
+        for (std::size_t v = 0; v < inside.size(); ++v) in_any[v] |= inside[v];
+    }
+    for (std::uint32_t v = 0; v < in_any.size(); ++v)
+        if (in_any[v] != 0 && is_used[v] != 0) parted.inside.push_back(v);
+}
+
+void measure_stretch(const Elements& elements, std::span<const Vec3f> before, Parted& parted) {
+    std::size_t stretched_count = 0;
+    for (const auto& [a, b] : elements.edges) {
+        const double length_before = double{length(before[a] - before[b])};
+        if (!(length_before > 0)) continue;
+        const double stretch = double{length(parted.vertices[a] - parted.vertices[b])} / length_before - 1;
+        parted.largest_stretch = std::max(parted.largest_stretch, stretch);
+        if (std::abs(stretch) > kStretched) ++stretched_count;
+    }
+    if (!elements.edges.empty())
+        parted.stretched_share =
+            static_cast<double>(stretched_count) / static_cast<double>(elements.edges.size());
+}
+
+} // namespace
+
+bool Parted::is_apart() const {
+    return own_pairs.empty() && inside.empty() &&
+           std::all_of(model_pairs.begin(), model_pairs.end(),
+                       [](const std::vector<FacePair>& pairs) { return pairs.empty(); });
+}
+
+Parted part(const TriangleMesh& surface, std::span<const TriangleMesh> models, const PartOptions& options) {
+    Deformable deformable = deformable_of(surface, options.pinned);
+    const std::vector<Collider> colliders = colliders_of(surface, models);
+    const Elements elements = elements_of(deformable);
+    const double edge_length = double{mean_edge_length(elements, deformable.positions)};
+    const SimulationOptions simulation = simulation_options(options, edge_length);
+    require_valid(simulation);
+    require_option(*simulation.thickness > 0, "the thickness is 0; parted surfaces need a distance");
+    require_valid(deformable);
+    require_valid(colliders, simulation);
+    Parted parted{.vertices = deformable.positions};
+    find_remaining(surface, models, colliders, options.thread_count, parted);
+    if (parted.is_apart()) return parted;
+    const auto progress = [&](double share) {
+        if (options.progress) options.progress(kUntanglingShare * share);
+    };
+    if (untangle(deformable, colliders, simulation, progress))
+        contract(deformable, colliders, simulation, edge_length, options);
+    if (options.progress) options.progress(1);
+    parted = Parted{.vertices = deformable.positions};
+    find_remaining(surface, models, colliders, options.thread_count, parted);
+    measure_stretch(elements, surface.vertices, parted);
+    return parted;
+}
+
+} // namespace echinus

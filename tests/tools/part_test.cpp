@@ -1,0 +1,61 @@
+#include "support/meshes.hpp"
+#include "tools/command_line.hpp"
+
+#include <echinus/intersections.hpp>
+#include <echinus/mesh_io.hpp>
+
+#include <nlohmann/json.hpp>
+
+#include <string>
+
+using namespace echinus;
+using namespace echinus::test;
+using nlohmann::json;
+
+namespace {
+
+/// A sheet through a ball.
+class PartCommand : public CommandLineTest {
+  protected:
+    void SetUp() override {
+        CommandLineTest::SetUp();
+        write("ball.obj", obj_text(make_sphere(0.3, 24, 12)));
+        write("sheet.obj", obj_text(translated(sheet_mesh(15, 15), {0, 0, 0.05F})));
+    }
+};
+
+} // namespace
+
+TEST_F(PartCommand, MovesASheetOutOfABallAndTellsHowMuchItIsStretched) {
+    const json result = json::parse(
+        expect_success({"part", "sheet.obj", "--model", "ball.obj", "-o", "parted.obj", "--json"}));
+    EXPECT_EQ(result["parted"], true);
+    EXPECT_GT(result["models"][0]["pairs_before"], 0);
+    EXPECT_EQ(result["models"][0]["pairs"], 0);
+    EXPECT_EQ(result["vertices_inside"], 0);
+    EXPECT_LT(result["stretched_share"], 0.1);
+    const TriangleMesh parted = read_mesh(path("parted.obj"));
+    EXPECT_EQ(parted.vertices.size(), 225U);
+    EXPECT_TRUE(intersecting_pairs(parted, read_mesh(path("ball.obj"))).empty());
+    const std::string text =
+        expect_success({"part", "sheet.obj", "--model", "ball.obj", "-o", "parted.obj", "--threads", "1"});
+    EXPECT_NE(text.find("pairs with ball.obj"), std::string::npos) << text;
+    EXPECT_NE(expect_success({"part", "sheet.obj", "-o", "-"}).find("\nf "), std::string::npos);
+}
+
+TEST_F(PartCommand, FailsForWhatCannotBePartedUnlessTheBestIsWanted) {
+    write("bottle.obj", obj_text(klein_bottle()));
+    expect_failure(1, "bottle.obj could not be parted: ", {"part", "bottle.obj", "-o", "parted.obj"});
+    const ProgramResult best = run({"part", "bottle.obj", "-o", "parted.obj", "--best", "--json"});
+    EXPECT_EQ(best.exit_status, 0);
+    EXPECT_NE(best.error.find("warning: bottle.obj could not be parted: "), std::string::npos) << best.error;
+    EXPECT_EQ(json::parse(best.output)["parted"], false);
+    EXPECT_EQ(read_mesh(path("parted.obj")).vertices.size(), klein_bottle().vertices.size());
+}
+
+TEST_F(PartCommand, RefusesArgumentsThatMakeNoSense) {
+    expect_failure(2, "-o", {"part", "sheet.obj"});
+    expect_failure(1, "none.obj", {"part", "sheet.obj", "--model", "none.obj", "-o", "a.obj"});
+    expect_failure(2, "the thickness is 0", {"part", "sheet.obj", "-o", "a.obj", "--thickness", "0"});
+    expect_failure(2, "named twice", {"part", "-", "--model", "-", "-o", "a.obj"});
+}
