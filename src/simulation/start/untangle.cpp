@@ -49,6 +49,8 @@ class Attempt {
                                      edge_length_, side);
         find_stiffnesses();
     }
+    Attempt(const Attempt&) = delete; // the models refer to the elements
+    Attempt& operator=(const Attempt&) = delete;
 
     Untangled run(const std::function<void(double share)>& progress) {
         const Workers::Session session(workers_);
@@ -64,15 +66,14 @@ class Attempt {
             if (is_nearer) least_depths = depths();
             if (is_fewer) best = {deformable_.positions, count};
             if (round == 0) initial_count = std::max(count, std::size_t{1});
-            if (progress)
-                progress(1 - static_cast<double>(best.tangle_count) / static_cast<double>(initial_count));
+            progress(1 - static_cast<double>(best.tangle_count) / static_cast<double>(initial_count));
             idle_rounds = is_fewer || is_nearer ? 0 : idle_rounds + 1;
             if (count == 0 || idle_rounds > threshold::kPatience) break;
             if (count > threshold::kFarWorse * best.tangle_count + threshold::kFewPairs) break;
             if (idle_rounds > 0)
                 stiffness = std::min(stiffness * threshold::kStiffening, threshold::kMostStiffness);
             if (idle_rounds > 0 && idle_rounds % threshold::kYieldAfter == 0) yield();
-            move(openings, stiffness);
+            if (!move(openings, stiffness)) break;
         }
         return best;
     }
@@ -124,7 +125,8 @@ class Attempt {
     }
 
     /// @param stiffness  of what opens the gaps, in stiffnesses of the material
-    void move(Openings& openings, double stiffness) {
+    /// @return false if the material is so distorted that no step is possible
+    bool move(Openings& openings, double stiffness) {
         for (Opening& opening : openings.all)
             for (std::size_t k = 0; k < Opening::kMostParts; ++k)
                 opening.stiffness +=
@@ -135,6 +137,8 @@ class Attempt {
         step_.solve(places, &openings, {.newton_steps = threshold::kStepsPerRound}, workers_);
         std::transform(places.begin(), places.end(), deformable_.positions.begin(),
                        [](const Vec3d& place) { return Vec3f(place); });
+        return std::all_of(deformable_.positions.begin(), deformable_.positions.end(),
+                           [](const Vec3f& position) { return is_finite(position); });
     }
 
     Deformable deformable_;
@@ -156,8 +160,13 @@ class Attempt {
 bool untangle(Deformable& deformable, const std::vector<Collider>& colliders,
               const SimulationOptions& options, const std::function<void(double share)>& progress) {
     Untangled best;
+    double reported = 0;
+    const auto report = [&](double share) { // an attempt that starts again does not go back
+        reported = std::max(reported, share);
+        if (progress) progress(reported);
+    };
     for (const ExitSide side : {ExitSide::Nearest, ExitSide::Front, ExitSide::Back}) {
-        Untangled found = Attempt(deformable, colliders, options, side).run(progress);
+        Untangled found = Attempt(deformable, colliders, options, side).run(report);
         if (found.tangle_count < best.tangle_count) best = std::move(found);
         if (best.tangle_count == 0 || colliders.empty()) break;
     }
