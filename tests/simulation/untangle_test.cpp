@@ -267,8 +267,8 @@ TEST(Untangle, PartsTenSheetsAtRandomPositionsAndHardlyStretchesThem) {
         }
         const Deformable cloth = cloth_of(sheets);
         EXPECT_GT(self_intersecting_pairs(sheets).size(), 500U) << seed;
-        expect_parted(cloth, {}, {});
         const Simulation simulation(cloth, {}, kUntangled);
+        EXPECT_TRUE(meeting_faces(simulation, {}).empty()) << seed;
         EXPECT_LT(stretched_share(cloth, simulation.deformable()), 0.02) << seed;
     }
 }
