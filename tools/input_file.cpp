@@ -1,6 +1,7 @@
 #include "input_file.hpp"
 
 #include "files/read_file.hpp"
+#include "run_program.hpp"
 
 #include <echinus/mesh_io.hpp>
 
@@ -67,4 +68,12 @@ echinus::TriangleMesh read_mesh(const MeshArgument& argument) {
     argument.require_format();
     const InputFile file(argument.path, argument.format);
     return file.read([](const fs::path& path) { return echinus::read_mesh(path); });
+}
+
+void move_to_frame(const echinus::Vec3d& origin, echinus::TriangleMesh& mesh, const std::string& name) {
+    if (mesh.origin == origin) return;
+    warn(name + ": moved to the frame of the first mesh, where coordinates are rounded to float");
+    const echinus::Vec3d offset = mesh.origin - origin;
+    for (echinus::Vec3f& vertex : mesh.vertices) vertex = echinus::Vec3f(echinus::Vec3d(vertex) + offset);
+    mesh.origin = origin;
 }

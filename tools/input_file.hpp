@@ -75,3 +75,7 @@ struct MeshArgument {
 
 /// @throws echinus::Error as echinus::read_mesh
 echinus::TriangleMesh read_mesh(const MeshArgument& argument);
+
+/// Moves a mesh to the frame of the first one, with a warning if it has another: far from 0 each mesh has a
+/// frame of its own (TriangleMesh::origin). @param name  of the mesh's file
+void move_to_frame(const echinus::Vec3d& origin, echinus::TriangleMesh& mesh, const std::string& name);

@@ -21,8 +21,9 @@ namespace echinus {
 struct PartOptions {
     /// The material that resists the displacements; its weight has no effect.
     ClothMaterial material{};
-    /// Distance in units to keep from the models, above 0; layers keep it from each other, too, but less near
-    /// small faces. By default a tenth of the mean edge length.
+    /// Distance in units, above 0, from which contact pushes the surface off the models; layers off each
+    /// other, too, but less near small faces. Where the material presses, the distance is less. By default a
+    /// tenth of the mean edge length.
     std::optional<double> thickness{};
     /// [vertex_count] 1 for vertices that stay where they are, otherwise 0; or empty.
     std::vector<std::uint8_t> pinned = {};
@@ -38,7 +39,7 @@ struct Parted {
     std::vector<FacePair> own_pairs = {}; ///< pairs of faces of the surface
     /// [model_count] pairs of a face of the surface and a face of the model
     std::vector<std::vector<FacePair>> model_pairs = {};
-    /// The vertices that are inside a closed model, ascending; without those that no face uses.
+    /// The vertices that are inside a closed model, ascending. An open model has no inside.
     std::vector<std::uint32_t> inside = {};
     double stretched_share = 0; ///< the share of edges whose length changed by more than 5 %
     double largest_stretch = 0; ///< the largest length of an edge over its length before, minus 1
@@ -59,9 +60,11 @@ struct Parted {
 ///
 /// The cost is that of untangling, up to a minute for 10 000 vertices on a detailed model, and of up to
 /// thirty frames of a simulation. The function may be called in several threads at once.
-/// @param models  open or closed meshes, in the frame of the surface
+/// A pinned vertex inside a model cannot be parted, and what it holds is stretched in vain.
+/// @param models  open or closed meshes; those in other frames are moved to that of the surface, where their
+/// coordinates are rounded to float
 /// @throws Error InvalidMesh as make_cloth() does for the surface and ExactMap::build() does for a model,
-/// whose message begins with its index, and if origins differ; InvalidOptions for options out of range
+/// whose message begins with its index; InvalidOptions for options out of range
 Parted part(const TriangleMesh& surface, std::span<const TriangleMesh> models,
             const PartOptions& options = {});
 

@@ -51,17 +51,24 @@ Deformable deformable_of(TriangleMesh surface, std::span<const std::uint8_t> pin
     return deformable;
 }
 
-std::vector<Collider> colliders_of(const TriangleMesh& surface, std::span<const TriangleMesh> models) {
+/// The meshes in the frame of the surface, which becomes their only one.
+std::vector<TriangleMesh> in_frame(const Vec3d& origin, std::span<const TriangleMesh> meshes) {
+    std::vector<TriangleMesh> moved(meshes.begin(), meshes.end());
+    for (TriangleMesh& mesh : moved) {
+        const Vec3d offset = mesh.origin - origin;
+        if (offset != Vec3d{})
+            for (Vec3f& vertex : mesh.vertices) vertex = Vec3f(Vec3d(vertex) + offset);
+        mesh.origin = {};
+    }
+    return moved;
+}
+
+std::vector<Collider> colliders_of(std::span<const TriangleMesh> models) {
     std::vector<Collider> colliders;
     for (std::size_t i = 0; i < models.size(); ++i) {
         const std::string name = "model " + std::to_string(i);
-        if (models[i].origin != surface.origin)
-            throw Error(ErrorCode::InvalidMesh, name + ": the origin is not that of the surface; move the "
-                                                       "vertices to its frame first");
-        TriangleMesh model = models[i];
-        model.origin = {};
         try {
-            colliders.push_back({.map = ExactMap::build(model)});
+            colliders.push_back({.map = ExactMap::build(models[i])});
         } catch (const Error& error) {
             throw Error(error.code(), name + ": " + error.what());
         }
@@ -85,7 +92,7 @@ void contract(Deformable& deformable, const std::vector<Collider>& colliders,
 
 void find_remaining(const TriangleMesh& surface, std::span<const TriangleMesh> models,
                     const std::vector<Collider>& colliders, unsigned thread_count, Parted& parted) {
-    TriangleMesh moved{parted.vertices, surface.faces, surface.origin};
+    TriangleMesh moved{parted.vertices, surface.faces};
     parted.own_pairs = self_intersecting_pairs(moved);
     for (const TriangleMesh& model : models) parted.model_pairs.push_back(intersecting_pairs(moved, model));
     std::vector<std::uint8_t> is_used(moved.vertices.size()), inside(moved.vertices.size());
@@ -123,9 +130,11 @@ bool Parted::is_apart() const {
                        [](const std::vector<FacePair>& pairs) { return pairs.empty(); });
 }
 
-Parted part(const TriangleMesh& surface, std::span<const TriangleMesh> models, const PartOptions& options) {
+Parted part(const TriangleMesh& surface, std::span<const TriangleMesh> given_models,
+            const PartOptions& options) {
+    const std::vector<TriangleMesh> models = in_frame(surface.origin, given_models);
     Deformable deformable = deformable_of(surface, options.pinned);
-    const std::vector<Collider> colliders = colliders_of(surface, models);
+    const std::vector<Collider> colliders = colliders_of(models);
     const Elements elements = elements_of(deformable);
     const double edge_length = double{mean_edge_length(elements, deformable.positions)};
     const SimulationOptions simulation = simulation_options(options, edge_length);

@@ -126,6 +126,8 @@ def test_a_surface_is_parted_from_models_and_from_itself():
     assert np.array_equal(held.mesh.vertices[190], sheet.vertices[190])
     with pytest.raises(TypeError, match="pinned must be an array of booleans"):
         ech.part(sheet, pinned=[190])
+    with pytest.raises(TypeError, match=r"models must be a list of meshes, such as \[body\]"):
+        ech.part(sheet, ball)
     with pytest.raises(ech.Error, match="model 0: "):
         ech.part(sheet, [ech.Mesh([[0, 0, 0]] * 3, [[0, 1, 2]])])
 

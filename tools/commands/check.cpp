@@ -47,15 +47,6 @@ void require_arguments(const CheckArguments& arguments) {
     for (const fs::path& path : arguments.paths) require_another_file(path, arguments.target);
 }
 
-/// Far from 0 each mesh has a frame of its own (TriangleMesh::origin).
-void move_to_frame(const Vec3d& origin, TriangleMesh& mesh, const std::string& name) {
-    if (mesh.origin == origin) return;
-    warn(name + ": moved to the frame of the first mesh, where coordinates are rounded to float");
-    const Vec3d offset = mesh.origin - origin;
-    for (Vec3f& vertex : mesh.vertices) vertex = Vec3f(Vec3d(vertex) + offset);
-    mesh.origin = origin;
-}
-
 NamedMeshes read_meshes(const CheckArguments& arguments) {
     NamedMeshes read;
     for (const fs::path& path : arguments.paths) {

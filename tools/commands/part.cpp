@@ -102,12 +102,21 @@ void require_arguments(const PartArguments& arguments) {
     for (const fs::path& model : arguments.models) require_another_file(model, arguments.target);
 }
 
+TriangleMesh read_model(const fs::path& path, const Vec3d& origin, const std::string& format) {
+    TriangleMesh model = read_mesh({.path = path, .format = format});
+    move_to_frame(origin, model, name_of_input(path));
+    if (!inspect(model).closed)
+        warn(name_of_input(path) + " is open, so it has no inside that the surface could leave; see echinus "
+                                   "mesh repair");
+    return model;
+}
+
 void run(const PartArguments& arguments) {
     require_arguments(arguments);
     TriangleMesh surface = read_mesh(arguments.surface);
     std::vector<TriangleMesh> models;
     for (const fs::path& path : arguments.models)
-        models.push_back(read_mesh({.path = path, .format = arguments.surface.format}));
+        models.push_back(read_model(path, surface.origin, arguments.surface.format));
     const Counts before = counts_of(surface, models);
     Parted parted;
     {

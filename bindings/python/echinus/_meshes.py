@@ -506,11 +506,12 @@ def part(
     mesh
         The surface; at most two faces meet at an edge.
     models
-        Open or closed meshes that stay, in the same frame. They may intersect themselves and each other.
+        Open or closed meshes that stay; an open one has no inside. They may intersect themselves and each other.
     thickness
-        Distance to keep from the models, above 0; by default a tenth of the mean edge length.
+        Distance above 0 from which contact pushes the surface off the models; by default a tenth of the mean edge length. It is
+        less where the material presses. A surface that does not intersect anything is returned as it is.
     pinned
-        For each vertex, true if it stays where it is; ``None``: no vertex is pinned.
+        For each vertex, true if it stays where it is; ``None``: no vertex is pinned. One inside a model cannot be parted.
     threads
         0: all cores. The result does not depend on it.
 
@@ -519,6 +520,8 @@ def part(
     Error
         ``invalid_mesh``; for a model the message gives its index. ``invalid_options``
     """
+    if isinstance(models, MeshLike) or not isinstance(models, Sequence):
+        raise TypeError("models must be a list of meshes, such as [body]")
     pins = [] if pinned is None else list(pinned) if isinstance(pinned, (Sequence, np.ndarray)) else [None]
     if not all(isinstance(pin, (bool, np.bool_)) for pin in pins):
         raise TypeError("pinned must be an array of booleans, one for each vertex")

@@ -128,34 +128,67 @@ Opening ModelOpenings::lift(std::span<const Vec3f> positions, std::uint32_t elem
 }
 
 /// [element] The mean normal of the model's faces that intersect an element and its neighbours, weighted by
-/// their areas: the normals around a tip that comes through a face add up to its axis.
+/// their areas: the normals around a tip that comes through faces add up to its axis. Those around a rod
+/// cancel out; then the elements leave along their own normals, beyond the nearer end of the rod.
 std::vector<Vec3d> ModelOpenings::lift_directions(std::span<const Vec3f> positions,
                                                   const ModelPairs::Found& found) const {
-    std::vector<Vec3d> directions(elements_.all.size());
-    std::vector<std::uint32_t> lifted = found.touching;
-    for (const auto& [element, face] : found.intersecting) {
-        directions[element] += area_normal(pairs_.face(face));
-        if (lifted.empty() || lifted.back() != element) lifted.push_back(element);
+    std::vector<std::uint32_t> lifted;
+    std::vector<Protrusion> protrusions;
+    for (std::size_t i = 0; i < found.intersecting.size();) {
+        const std::size_t first = i;
+        const std::uint32_t element = found.intersecting[first].a;
+        while (i < found.intersecting.size() && found.intersecting[i].a == element) ++i;
+        lifted.push_back(element);
+        protrusions.push_back(
+            protrusion_through(positions, std::span(found.intersecting).subspan(first, i - first)));
     }
     for (const std::uint32_t element : found.touching) {
         const auto& [a, b, c] = elements_.all[element].vertices;
         const Vec3f middle = (positions[a] + positions[b] + positions[c]) * (1.0F / 3);
         const float farthest = std::max(
             {length(positions[a] - middle), length(positions[b] - middle), length(positions[c] - middle)});
-        directions[element] = Vec3d(contact(collider_, middle, farthest).normal);
+        const Vec3d normal(contact(collider_, middle, farthest).normal);
+        lifted.push_back(element);
+        protrusions.push_back({normal, normal, 1});
     }
-    for (const std::uint32_t element : lifted) directions[element] = unit_or_zero(directions[element]);
-    std::vector<Vec3d> sums(positions.size());
-    for (int i = 0; i < threshold::kSmoothingsOfLifts; ++i) {
-        std::fill(sums.begin(), sums.end(), Vec3d{});
-        for (const std::uint32_t element : lifted)
-            for (const std::uint32_t v : elements_.all[element].vertices) sums[v] += directions[element];
-        for (const std::uint32_t element : lifted) {
-            const auto& [a, b, c] = elements_.all[element].vertices;
-            directions[element] = unit_or_zero(sums[a] + sums[b] + sums[c]);
+    std::vector<Protrusion> sums(positions.size());
+    for (int round = 0; round < threshold::kSmoothingsOfLifts; ++round) {
+        std::fill(sums.begin(), sums.end(), Protrusion{});
+        for (std::size_t i = 0; i < lifted.size(); ++i)
+            for (const std::uint32_t v : elements_.all[lifted[i]].vertices) sums[v] += protrusions[i];
+        for (std::size_t i = 0; i < lifted.size(); ++i) {
+            protrusions[i] = {};
+            for (const std::uint32_t v : elements_.all[lifted[i]].vertices) protrusions[i] += sums[v];
         }
     }
+    std::vector<Vec3d> directions(elements_.all.size());
+    for (std::size_t i = 0; i < lifted.size(); ++i) {
+        const Protrusion& protrusion = protrusions[i];
+        const bool has_axis = length(protrusion.normals) >= threshold::kLeastAxis * protrusion.area;
+        directions[lifted[i]] = unit_or_zero(has_axis ? protrusion.normals : protrusion.nearer_end);
+    }
     return directions;
+}
+
+/// @param pairs  those of one element
+ModelOpenings::Protrusion ModelOpenings::protrusion_through(std::span<const Vec3f> positions,
+                                                            std::span<const FacePair> pairs) const {
+    const auto& [a, b, c] = elements_.all[pairs.front().a].vertices;
+    const Vec3d own = unit_or_zero(area_normal({positions[a], positions[b], positions[c]}));
+    Protrusion protrusion;
+    double above = 0, below = 0;
+    for (const FacePair& pair : pairs) {
+        const std::array<Vec3f, 3> face = pairs_.face(pair.b);
+        protrusion.normals += area_normal(face);
+        protrusion.area += length(area_normal(face));
+        for (const Vec3f& corner : face) {
+            const double height = dot(own, Vec3d(corner) - Vec3d(positions[a]));
+            above = std::max(above, height);
+            below = std::max(below, -height);
+        }
+    }
+    protrusion.nearer_end = (above <= below ? own : -own) * protrusion.area;
+    return protrusion;
 }
 
 } // namespace echinus

@@ -31,6 +31,20 @@ class ModelOpenings {
     double depths() const { return depths_; }
 
   private:
+    /// The part of the model that comes through an element, or through several.
+    struct Protrusion {
+        Vec3d normals;    ///< the sum of the area normals of its faces
+        Vec3d nearer_end; ///< the normals of the elements, towards its nearer end, weighted by `area`
+        double area = 0;  ///< the sum of the lengths of its normals
+
+        Protrusion& operator+=(const Protrusion& other) {
+            normals += other.normals;
+            nearer_end += other.nearer_end;
+            area += other.area;
+            return *this;
+        }
+    };
+
     std::size_t find_inside(std::span<const Vec3f> positions);
     void add_particles(std::span<const Vec3f> positions, std::vector<Opening>& openings);
     std::optional<Vec3f> exit_along(Vec3f from, const Vec3f& direction) const;
@@ -38,6 +52,7 @@ class ModelOpenings {
                     std::vector<Opening>& openings) const;
     Opening lift(std::span<const Vec3f> positions, std::uint32_t element, const Vec3d& direction,
                  double height) const;
+    Protrusion protrusion_through(std::span<const Vec3f> positions, std::span<const FacePair> pairs) const;
     std::vector<Vec3d> lift_directions(std::span<const Vec3f> positions,
                                        const ModelPairs::Found& found) const;
 

@@ -47,6 +47,9 @@ inline constexpr double kAgreement = 0.5;
 /// The cosine between the preferred direction and that to the nearest point below which a particle takes the
 /// preferred one.
 inline constexpr float kOpposed = -0.5F;
+/// The least sum of the normals around a part that comes through a face, over the sum of their lengths, that
+/// gives the axis of the part.
+inline constexpr double kLeastAxis = 0.1;
 /// The number of times that normals are averaged with those of neighbours for the preferred directions, and
 /// that the directions are averaged in which faces are lifted: a part of a model that comes through several
 /// faces has a common axis.
