@@ -18,7 +18,6 @@
 #include <echinus/map_file.hpp>
 #include <echinus/mesh.hpp>
 #include <echinus/particle_collision.hpp>
-#include <echinus/parting.hpp>
 #include <echinus/simulation.hpp>
 #include <echinus/soft_body.hpp>
 #include <echinus/surface_collision.hpp>

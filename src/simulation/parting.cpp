@@ -6,7 +6,7 @@
 
 #include <echinus/error.hpp>
 #include <echinus/exact_map.hpp>
-#include <echinus/parting.hpp>
+#include <echinus/surface_collision.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -95,17 +95,14 @@ void find_remaining(const TriangleMesh& surface, std::span<const TriangleMesh> m
     TriangleMesh moved{parted.vertices, surface.faces};
     parted.own_pairs = self_intersecting_pairs(moved);
     for (const TriangleMesh& model : models) parted.model_pairs.push_back(intersecting_pairs(moved, model));
-    std::vector<std::uint8_t> is_used(moved.vertices.size()), inside(moved.vertices.size());
-    for (const Triangle& face : moved.faces)
-        for (const std::uint32_t v : face) is_used[v] = 1;
-    std::vector<std::uint8_t> in_any(moved.vertices.size());
+    std::vector<std::uint8_t> inside(moved.vertices.size()), in_any(moved.vertices.size());
     for (const Collider& collider : colliders) {
         if (!map_of_surface(collider)->view().border.empty()) continue; // open: no inside
         contains_batch(collider, moved.vertices, inside, thread_count);
         for (std::size_t v = 0; v < inside.size(); ++v) in_any[v] |= inside[v];
     }
     for (std::uint32_t v = 0; v < in_any.size(); ++v)
-        if (in_any[v] != 0 && is_used[v] != 0) parted.inside.push_back(v);
+        if (in_any[v] != 0) parted.inside.push_back(v);
 }
 
 void measure_stretch(const Elements& elements, std::span<const Vec3f> before, Parted& parted) {

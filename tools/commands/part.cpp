@@ -8,7 +8,7 @@
 
 #include <echinus/intersections.hpp>
 #include <echinus/mesh_io.hpp>
-#include <echinus/parting.hpp>
+#include <echinus/surface_collision.hpp>
 
 #include <fmt/format.h>
 

@@ -5,7 +5,7 @@
 
 #include <echinus/intersections.hpp>
 #include <echinus/mesh_io.hpp>
-#include <echinus/parting.hpp>
+#include <echinus/surface_collision.hpp>
 
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>

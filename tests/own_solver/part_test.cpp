@@ -4,7 +4,7 @@
 #include "support/meshes.hpp"
 
 #include <echinus/exact_map.hpp>
-#include <echinus/parting.hpp>
+#include <echinus/surface_collision.hpp>
 
 #include <gtest/gtest.h>
 
