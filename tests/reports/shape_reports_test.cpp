@@ -1,5 +1,5 @@
-// Public reports about sides, distances and repair, most of them of other programs: the shape, made anew from
-// the description, and the right answer.
+// Public reports about sides, distances, crossings and repair, most of them of other programs: the shape,
+// made anew from the description, and the right answer.
 
 #include "support/meshes.hpp"
 #include "support/random_points.hpp"
@@ -125,14 +125,24 @@ struct SideReport {
 };
 
 std::vector<SideReport> side_reports() {
-    TriangleMesh opposite_doubles = unit_cube(); // two faces again, turned over
-    opposite_doubles.faces.push_back({0, 3, 2});
-    opposite_doubles.faces.push_back({4, 7, 5});
+    TriangleMesh opposite_doubles = unit_cube(); // eight faces again, turned over
+    for (std::size_t f = 0; f < 8; ++f) {
+        const auto [a, b, c] = opposite_doubles.faces[f];
+        opposite_doubles.faces.push_back({a, c, b});
+    }
     return {
         {"NVIDIA/warp#1836: sign by the normal of the nearest face beside a sharp tetrahedron",
          {{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {{0, 2, 1}, {0, 3, 2}, {0, 1, 3}, {1, 2, 3}}},
          {{0.1F, 0.1F, 0.1F}, {0.3F, 0.3F, 0.3F}},
-         {{2, -1, -1}, {-1, -1, 2}, {1.5F, -0.1F, -0.1F}, {-0.1F, 1.5F, -0.1F}, {0.4F, 0.4F, 0.4F}}},
+         {{2, -1, -1},
+          {-1, -1, 2},
+          {1.5F, -0.1F, -0.1F},
+          {-0.1F, 1.5F, -0.1F},
+          {0.4F, 0.4F, 0.4F},
+          // Warp 1.19.0 finds these inside.
+          {1.439F, 0.488F, 0.462F},
+          {2.655F, 1.676F, 1.746F},
+          {0.226F, 0.211F, 1.201F}}},
         {"isl-org/Open3D#5105: a ray along the diagonal touches the cube in an edge",
          unit_cube(),
          {{0.5F, 0.5F, 0.5F}},
@@ -204,7 +214,7 @@ std::vector<SideReport> side_reports() {
          make_box({2, 2, 2}),
          {{0, 0, 0}},
          {{2, 1, 1}, {2, 1, 0}, {1, 2, -1}, {-1, -1, 2}, {2, 2, 1}}},
-        {"libigl/libigl#644: two faces of a cube again, turned over",
+        {"libigl/libigl#644: eight faces of a cube again, turned over",
          opposite_doubles,
          {{0.5F, 0.5F, 0.5F}},
          {{0.5F, 0.5F, 1.5F}, {-0.5F, 0.5F, 0.5F}},
@@ -292,10 +302,20 @@ TEST(Reports, OfDistancesAreAnswered) {
          make_sphere(1, 64, 32),
          {10, 12, 15},
          std::sqrt(469.0) - 1},
+        {"AcademySoftwareFoundation/openvdb#903: between two spheres",
+         joined({translated(make_sphere(1, 32, 16), {-1.05F, 0, 0}),
+                 translated(make_sphere(1, 32, 16), {1.05F, 0, 0})}),
+         {0, 0, 0},
+         0.05},
         {"AcademySoftwareFoundation/openvdb#903: between two boxes",
          joined({box({-2, -1, -1}, {-0.05, 1, 1}), box({0.05, -1, -1}, {2, 1, 1})}),
          {0, 0, 0},
          0.05},
+        {"dimforge/parry#171: beside a roof", house(), {-1, 1, 2}, std::sqrt(2.0)},
+        {"mikedh/trimesh#2534: in a cavity",
+         joined({make_box({2, 2, 2}), turned_inside_out(make_box({1, 1, 1}))}),
+         {0, 0, 0},
+         0.5},
         {"BerkeleyAutomation/python-fcl#54: on a face",
          {{{0, 0, 0}, {3, 0, 0}, {0, 3, 0}, {0, 0, 3}}, {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}}},
          {1, 1, 1},
@@ -374,4 +394,33 @@ TEST(Reports, OfFacesThatMeetThemselvesAreAnswered) {
     };
     for (const IntersectionReport& report : reports)
         EXPECT_EQ(self_intersecting_pairs(report.mesh).size(), report.pair_count) << report.thread;
+}
+
+TEST(Reports, OfAThinGapAreAnswered) {
+    SCOPED_TRACE("newton-physics/newton#3004: 8192 points between two boxes, 0.2 mm apart");
+    const TriangleMesh boxes = joined({box({-1, -1, -1}, {1, 1, -1e-4}), box({-1, -1, 1e-4}, {1, 1, 1})});
+    const ExactMap map = ExactMap::build(boxes);
+    Random random(1);
+    std::uniform_real_distribution<float> across(-1, 1), along(-0.95e-4F, 0.95e-4F);
+    int outside_count = 0;
+    for (int i = 0; i < 8192; ++i) {
+        const Vec3f point{across(random), across(random), along(random)};
+        outside_count += !contains(map.view(), point);
+    }
+    EXPECT_EQ(outside_count, 8192);
+    EXPECT_TRUE(contains(map.view(), {0, 0, 1.05e-4F}));
+    EXPECT_TRUE(contains(map.view(), {0, 0, -1.05e-4F}));
+}
+
+TEST(Reports, OfShotsAtAFlatMeshAreAnswered) {
+    SCOPED_TRACE("bepu/bepuphysics2#371: shots that are too fast go through a flat mesh");
+    const TriangleMesh plate{{{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}}, {{0, 1, 2}, {0, 2, 3}}};
+    const ExactMap map = ExactMap::build(plate);
+    for (float reach = 1; reach <= 1e6F; reach *= 10)
+        for (const float side : {1.0F, -1.0F}) {
+            const SweepHit hit = sweep(map.view(), {0.25F, 0.5F, side}, {0.25F, 0.5F, -side * reach});
+            ASSERT_TRUE(hit.found()) << reach;
+            EXPECT_NEAR(double{hit.point.z}, 0, 4e-6);
+            EXPECT_NEAR(double{hit.point.x}, 0.25, 4e-6);
+        }
 }
