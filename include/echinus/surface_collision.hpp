@@ -114,6 +114,12 @@ struct PartOptions {
     std::optional<double> thickness{};
     /// [vertex_count] 1 for vertices that stay where they are, otherwise 0; or empty.
     std::vector<std::uint8_t> pinned = {};
+    /// [vertex_count] The layer of each vertex, a larger number farther outside; all vertices of a face are
+    /// in the same one. A layer moves to the outer side of those with smaller numbers, which do not give way,
+    /// and comes from behind any part of them, even if it does not intersect it. The outer side is the one
+    /// that faces away from the closed models on average, or without any, the one to which the normals of the
+    /// faces point. Or empty: layers that intersect then separate to where most of each one already is.
+    std::vector<std::uint8_t> layers = {};
     unsigned thread_count = 1; ///< as in SimulationOptions; the result does not depend on it
     /// Called with the completed share of the work, 0 to 1, in the thread that called part(). An exception
     /// that it throws ends the work and reaches the caller.
@@ -143,7 +149,7 @@ struct Parted {
 ///
 /// If the surface cannot be parted, for instance because it is knotted or the models leave no room, the
 /// result has the fewest intersections found. A surface that neither intersects anything nor is inside a
-/// model is returned as it is.
+/// model, with its layers in order, is returned as it is.
 ///
 /// The cost is that of untangling, up to a minute for 10 000 vertices on a detailed model, and of up to
 /// thirty frames of a simulation. The function may be called in several threads at once.

@@ -1,5 +1,6 @@
 #include "simulation/start/untangle.hpp"
 #include "simulation/start/validation.hpp"
+#include "simulation/surface_layers.hpp"
 #include "simulation/surfaces/edge_lengths.hpp"
 #include "simulation/surfaces/elements.hpp"
 #include "simulation/surfaces/model_mesh.hpp"
@@ -39,16 +40,25 @@ SimulationOptions simulation_options(const PartOptions& options, double edge_len
 }
 
 /// The surface in its own frame.
-Deformable deformable_of(TriangleMesh surface, std::span<const std::uint8_t> pinned) {
-    require_option(pinned.empty() || pinned.size() == surface.vertices.size(),
-                   "pinned has " + std::to_string(pinned.size()) + " entries; it needs one for each of the " +
-                       std::to_string(surface.vertices.size()) + " vertices, or none");
+Deformable deformable_of(TriangleMesh surface) {
     surface.origin = {};
     Deformable deformable = make_cloth(surface, {});
-    for (std::size_t v = 0; v < pinned.size(); ++v)
-        if (pinned[v] != 0) deformable.inverse_masses[v] = 0;
     deformable.rest_positions = deformable.positions;
     return deformable;
+}
+
+void pin(Deformable& deformable, std::span<const std::uint8_t> pinned) {
+    for (std::size_t v = 0; v < pinned.size(); ++v)
+        if (pinned[v] != 0) deformable.inverse_masses[v] = 0;
+}
+
+/// Calls a function, and names the mesh of which its errors speak.
+auto with_name(const std::string& name, const auto& function) {
+    try {
+        return function();
+    } catch (const Error& error) {
+        throw Error(error.code(), name + ": " + error.what());
+    }
 }
 
 /// The meshes in the frame of the surface, which becomes their only one.
@@ -67,14 +77,37 @@ std::vector<Collider> colliders_of(std::span<const TriangleMesh> models) {
     std::vector<Collider> colliders;
     for (std::size_t i = 0; i < models.size(); ++i) {
         const std::string name = "model " + std::to_string(i);
-        try {
-            colliders.push_back({.map = ExactMap::build(models[i])});
-        } catch (const Error& error) {
-            throw Error(error.code(), name + ": " + error.what());
-        }
+        colliders.push_back({.map = with_name(name, [&] { return ExactMap::build(models[i]); })});
         colliders.back().name = name;
     }
     return colliders;
+}
+
+/// Separates one layer after the other from the models and from the layers inside of it.
+/// @return whether nothing intersects
+bool untangle_layers(const TriangleMesh& surface, const std::vector<Collider>& colliders,
+                     const SimulationOptions& simulation, const PartOptions& options,
+                     std::vector<Vec3f>& positions) {
+    std::vector<SurfaceLayer> layers = layers_of(surface, options);
+    std::vector<InnerLayer> inner;
+    bool is_apart = true;
+    for (SurfaceLayer& layer : layers) {
+        const auto progress = [&](double share) {
+            if (options.progress)
+                options.progress(kUntanglingShare * (static_cast<double>(inner.size()) + share) /
+                                 static_cast<double>(layers.size()));
+        };
+        Deformable deformable = deformable_of(layer.mesh);
+        pin(deformable, layer.pinned);
+        is_apart = untangle(deformable, colliders, simulation, inner, progress) && is_apart;
+        for (std::size_t v = 0; v < layer.vertices.size(); ++v)
+            positions[layer.vertices[v]] = deformable.positions[v];
+        layer.mesh.vertices = deformable.positions;
+        turn_outward(layer.mesh, colliders);
+        inner.push_back(with_name("layer " + std::to_string(inner.size()),
+                                  [&] { return InnerLayer(std::move(layer.mesh)); }));
+    }
+    return is_apart;
 }
 
 /// Lets the material contract without leaving what untangling has found.
@@ -97,7 +130,7 @@ void find_remaining(const TriangleMesh& surface, std::span<const TriangleMesh> m
     for (const TriangleMesh& model : models) parted.model_pairs.push_back(intersecting_pairs(moved, model));
     std::vector<std::uint8_t> inside(moved.vertices.size()), in_any(moved.vertices.size());
     for (const Collider& collider : colliders) {
-        if (!map_of_surface(collider)->view().border.empty()) continue; // open: no inside
+        if (!has_inside(collider)) continue;
         contains_batch(collider, moved.vertices, inside, thread_count);
         for (std::size_t v = 0; v < inside.size(); ++v) in_any[v] |= inside[v];
     }
@@ -130,7 +163,9 @@ bool Parted::is_apart() const {
 Parted part(const TriangleMesh& surface, std::span<const TriangleMesh> given_models,
             const PartOptions& options) {
     const std::vector<TriangleMesh> models = in_frame(surface.origin, given_models);
-    Deformable deformable = deformable_of(surface, options.pinned);
+    Deformable deformable = deformable_of(surface);
+    require_layers(surface, options);
+    pin(deformable, options.pinned);
     const std::vector<Collider> colliders = colliders_of(models);
     const Elements elements = elements_of(deformable);
     const double edge_length = double{mean_edge_length(elements, deformable.positions)};
@@ -141,12 +176,10 @@ Parted part(const TriangleMesh& surface, std::span<const TriangleMesh> given_mod
     require_valid(colliders, simulation);
     Parted parted{.vertices = deformable.positions};
     find_remaining(surface, models, colliders, options.thread_count, parted);
-    if (parted.is_apart()) return parted;
-    const auto progress = [&](double share) {
-        if (options.progress) options.progress(kUntanglingShare * share);
-    };
-    if (untangle(deformable, colliders, simulation, progress))
-        contract(deformable, colliders, simulation, edge_length, options);
+    if (options.layers.empty() && parted.is_apart()) return parted;
+    const bool is_apart = untangle_layers(surface, colliders, simulation, options, deformable.positions);
+    if (deformable.positions == parted.vertices) return parted;
+    if (is_apart) contract(deformable, colliders, simulation, edge_length, options);
     if (options.progress) options.progress(1);
     parted = Parted{.vertices = deformable.positions};
     find_remaining(surface, models, colliders, options.thread_count, parted);

@@ -37,6 +37,7 @@ void ExitDirections::choose(std::span<const Vec3f> positions, std::span<const st
         if (inside[v] != 0 && sign != 0) directions_[v] = normals[v] * sign;
     }
     if (sign == 0) follow_leaders(inside, nearest);
+    if (sign != 0 && side_ == ExitSide::Nearest) let_back_out(inside, nearest);
 }
 
 /// [particle] of unit length, or 0
@@ -57,6 +58,28 @@ std::vector<Vec3f> ExitDirections::smooth_normals(std::span<const Vec3f> positio
         std::transform(sums.begin(), sums.end(), normals.begin(), unit_or_zero<float>);
     }
     return normals;
+}
+
+/// A group of particles whose nearest points lie opposite to their directions has either passed the middle
+/// of the part of the model that the surface surrounds, or entered another part from the outside: a sleeve
+/// the chest. The group then borders mostly on particles outside, and leaves where it came in.
+void ExitDirections::let_back_out(std::span<const std::uint8_t> inside, std::span<const Contact> nearest) {
+    const auto is_opposed = [&](std::uint32_t v) {
+        return inside[v] != 0 && dot(directions_[v], nearest[v].normal) < threshold::kOpposed;
+    };
+    UnionFind groups(directions_.size());
+    for (const auto& [p, q] : elements_.edges)
+        if (is_opposed(p) && is_opposed(q)) groups.join(p, q);
+    std::vector<int> excess(directions_.size()); // [root] edges to the outside, less those to others inside
+    for (const auto& [p, q] : elements_.edges)
+        if (is_opposed(p) != is_opposed(q)) {
+            const auto& [in_group, other] = is_opposed(p) ? Edge{p, q} : Edge{q, p};
+            excess[groups.find(in_group)] += inside[other] == 0 ? 1 : -1;
+        }
+    std::vector<std::uint32_t> leaving;
+    for (std::uint32_t v = 0; v < directions_.size(); ++v)
+        if (is_opposed(v) && excess[groups.find(v)] > 0) leaving.push_back(v);
+    for (const std::uint32_t v : leaving) directions_[v] = {};
 }
 
 /// Neighbours whose nearest points lie in opposite directions belong to different groups. The smaller group

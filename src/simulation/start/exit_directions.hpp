@@ -31,6 +31,7 @@ class ExitDirections {
 
   private:
     std::vector<Vec3f> smooth_normals(std::span<const Vec3f> positions) const;
+    void let_back_out(std::span<const std::uint8_t> inside, std::span<const Contact> nearest);
     void follow_leaders(std::span<const std::uint8_t> inside, std::span<const Contact> nearest);
 
     const Elements& elements_;

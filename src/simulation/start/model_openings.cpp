@@ -34,6 +34,12 @@ ModelOpenings::ModelOpenings(const Elements& elements, const Collider& collider,
       extent_(extent_of(collider)), directions_(elements, side), inside_(elements.vertex_count()),
       nearest_(elements.vertex_count()) {}
 
+ModelOpenings::ModelOpenings(const Elements& elements, const InnerLayer& layer, float gap, float edge_length,
+                             ExitSide side)
+    : ModelOpenings(elements, layer.collider(), {}, gap, edge_length, side) {
+    layer_ = &layer;
+}
+
 std::size_t ModelOpenings::add(std::span<const Vec3f> positions, std::vector<Opening>& openings) {
     const std::size_t inside_count = find_inside(positions);
     add_particles(positions, openings);
@@ -42,21 +48,17 @@ std::size_t ModelOpenings::add(std::span<const Vec3f> positions, std::vector<Ope
     return inside_count + found.intersecting.size() + found.touching.size();
 }
 
-/// An open surface has no inside.
+/// An open surface has no inside, unless it is a layer.
 std::size_t ModelOpenings::find_inside(std::span<const Vec3f> positions) {
-    if (!pairs_.has_inside()) return 0;
-    contains_batch(collider_, positions, inside_);
+    if (layer_ == nullptr && !pairs_.has_inside()) return 0;
     const float guarded = threshold::kGuarded * edge_length_;
+    contacts_batch(collider_, positions, layer_ != nullptr ? extent_ : guarded, nearest_);
     std::size_t count = 0;
     for (std::size_t v = 0; v < positions.size(); ++v) {
-        nearest_[v] = {};
-        if (pairs_.passes(v)) {
-            inside_[v] = 0;
-            continue;
-        }
+        if (layer_ != nullptr) nearest_[v] = layer_->contact_of(positions[v], nearest_[v]);
+        if (pairs_.passes(v) || -nearest_[v].depth > guarded) nearest_[v] = {};
+        inside_[v] = nearest_[v].inside ? 1 : 0;
         count += inside_[v];
-        nearest_[v] =
-            inside_[v] != 0 ? contact(collider_, positions[v]) : contact(collider_, positions[v], guarded);
     }
     directions_.choose(positions, inside_, nearest_);
     return count;
@@ -82,13 +84,22 @@ void ModelOpenings::add_particles(std::span<const Vec3f> positions, std::vector<
     }
 }
 
+Contact ModelOpenings::nearest_point(const Vec3f& from, float margin) const {
+    const Contact nearest = contact(collider_, from, margin);
+    return layer_ != nullptr ? layer_->contact_of(from, nearest) : nearest;
+}
+
+bool ModelOpenings::is_inside(const Vec3f& point) const {
+    return layer_ != nullptr ? nearest_point(point, extent_).inside : contains(collider_, point);
+}
+
 /// The first point outside on a straight path, at the gap.
 std::optional<Vec3f> ModelOpenings::exit_along(Vec3f from, const Vec3f& direction) const {
     for (int i = 0; i < threshold::kMostSurfacesCrossed; ++i) {
         const SweepHit hit = sweep(collider_, collider_.pose, from, from + direction * extent_);
         if (!hit.found()) break;
         from = hit.point + direction * gap_;
-        if (!contains(collider_, from)) return from;
+        if (!is_inside(from)) return from;
     }
     return std::nullopt;
 }
@@ -147,7 +158,7 @@ std::vector<Vec3d> ModelOpenings::lift_directions(std::span<const Vec3f> positio
         const Vec3f middle = (positions[a] + positions[b] + positions[c]) * (1.0F / 3);
         const float farthest = std::max(
             {length(positions[a] - middle), length(positions[b] - middle), length(positions[c] - middle)});
-        const Vec3d normal(contact(collider_, middle, farthest).normal);
+        const Vec3d normal(nearest_point(middle, farthest).normal);
         lifted.push_back(element);
         protrusions.push_back({normal, normal, 1});
     }

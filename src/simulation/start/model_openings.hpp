@@ -1,6 +1,7 @@
 #pragma once
 
 #include "simulation/start/exit_directions.hpp"
+#include "simulation/start/inner_layer.hpp"
 #include "simulation/start/model_pairs.hpp"
 #include "simulation/start/openings.hpp"
 
@@ -24,6 +25,9 @@ class ModelOpenings {
     /// @pre the collider has an exact map
     ModelOpenings(const Elements& elements, const Collider& collider, std::vector<std::uint8_t> passes,
                   float gap, float edge_length, ExitSide side);
+    /// @param layer  stays alive as long as the object
+    ModelOpenings(const Elements& elements, const InnerLayer& layer, float gap, float edge_length,
+                  ExitSide side);
 
     /// @return the number of intersecting pairs, touching faces and particles inside
     std::size_t add(std::span<const Vec3f> positions, std::vector<Opening>& openings);
@@ -45,6 +49,8 @@ class ModelOpenings {
         }
     };
 
+    Contact nearest_point(const Vec3f& from, float margin) const;
+    bool is_inside(const Vec3f& point) const;
     std::size_t find_inside(std::span<const Vec3f> positions);
     void add_particles(std::span<const Vec3f> positions, std::vector<Opening>& openings);
     std::optional<Vec3f> exit_along(Vec3f from, const Vec3f& direction) const;
@@ -58,7 +64,8 @@ class ModelOpenings {
 
     const Elements& elements_;
     ModelPairs pairs_;
-    Collider collider_; ///< with its exact map
+    const InnerLayer* layer_ = nullptr; ///< if the model is one
+    Collider collider_;                 ///< with its exact map
     float gap_, edge_length_;
     float extent_; ///< no straight path inside the model is longer
     ExitDirections directions_;

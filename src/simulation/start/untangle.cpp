@@ -35,7 +35,7 @@ struct Untangled {
 class Attempt {
   public:
     Attempt(const Deformable& deformable, const std::vector<Collider>& colliders,
-            const SimulationOptions& options, ExitSide side)
+            const SimulationOptions& options, std::span<const InnerLayer> inner_layers, ExitSide side)
         : deformable_(deformable), options_(options), elements_(elements_of(deformable)),
           step_(elastic_parts(deformable, options)), motion_(deformable.particle_count()),
           is_held_(deformable.particle_count()), no_forces_(deformable.particle_count()),
@@ -47,6 +47,8 @@ class Attempt {
                 models_.emplace_back(elements_, colliders[c], let_through(deformable, c),
                                      ColliderNow(colliders[c], colliders[c].pose, options).thickness,
                                      edge_length_, side);
+        for (const InnerLayer& layer : inner_layers)
+            models_.emplace_back(elements_, layer, layer_gap(), edge_length_, side);
         find_stiffnesses();
     }
     Attempt(const Attempt&) = delete; // the models refer to the elements
@@ -158,7 +160,8 @@ class Attempt {
 } // namespace
 
 bool untangle(Deformable& deformable, const std::vector<Collider>& colliders,
-              const SimulationOptions& options, const std::function<void(double share)>& progress) {
+              const SimulationOptions& options, std::span<const InnerLayer> inner_layers,
+              const std::function<void(double share)>& progress) {
     Untangled best;
     double reported = 0;
     const auto report = [&](double share) { // an attempt that starts again does not go back
@@ -166,7 +169,7 @@ bool untangle(Deformable& deformable, const std::vector<Collider>& colliders,
         if (progress) progress(reported);
     };
     for (const ExitSide side : {ExitSide::Nearest, ExitSide::Front, ExitSide::Back}) {
-        Untangled found = Attempt(deformable, colliders, options, side).run(report);
+        Untangled found = Attempt(deformable, colliders, options, inner_layers, side).run(report);
         if (found.tangle_count < best.tangle_count) best = std::move(found);
         if (best.tangle_count == 0 || colliders.empty()) break;
     }

@@ -1,9 +1,12 @@
 #pragma once
 
+#include "simulation/start/inner_layer.hpp"
+
 #include <echinus/collider.hpp>
 #include <echinus/simulation.hpp>
 
 #include <functional>
+#include <span>
 #include <vector>
 
 namespace echinus {
@@ -13,9 +16,11 @@ namespace echinus {
 /// intersections. Pinned particles stay. Velocities do not change; if nothing intersects, neither do
 /// positions.
 /// @pre deformable, colliders and options are valid, surfaces collide, and the thickness is set
+/// @param inner_layers  what is behind them counts as inside
 /// @param progress  receives the share of the initial intersections that are gone; or empty
 /// @return whether nothing intersects
 bool untangle(Deformable& deformable, const std::vector<Collider>& colliders,
-              const SimulationOptions& options, const std::function<void(double share)>& progress = {});
+              const SimulationOptions& options, std::span<const InnerLayer> inner_layers = {},
+              const std::function<void(double share)>& progress = {});
 
 } // namespace echinus

@@ -1,0 +1,86 @@
+#include "simulation/surface_layers.hpp"
+
+#include "simulation/start/validation.hpp"
+#include "simulation/surfaces/model_mesh.hpp"
+
+#include <echinus/error.hpp>
+#include <echinus/exact_map.hpp>
+
+#include <cstddef>
+#include <limits>
+#include <map>
+#include <numeric>
+#include <span>
+#include <string>
+#include <utility>
+
+namespace echinus {
+
+namespace {
+
+void require_entries(std::span<const std::uint8_t> option, const std::string& name,
+                     const TriangleMesh& surface) {
+    require_option(option.empty() || option.size() == surface.vertices.size(),
+                   name + " has " + std::to_string(option.size()) +
+                       " entries; it needs one for each of the " + std::to_string(surface.vertices.size()) +
+                       " vertices, or none");
+}
+
+} // namespace
+
+void require_layers(const TriangleMesh& surface, const PartOptions& options) {
+    require_entries(options.pinned, "pinned", surface);
+    const std::span<const std::uint8_t> layers = options.layers;
+    require_entries(layers, "layers", surface);
+    if (layers.empty()) return;
+    for (std::size_t f = 0; f < surface.faces.size(); ++f) {
+        const auto& [a, b, c] = surface.faces[f];
+        require_option(layers[a] == layers[b] && layers[a] == layers[c],
+                       "the vertices of face " + std::to_string(f) +
+                           " are in different layers; a face must be in one");
+    }
+}
+
+bool has_inside(const Collider& collider) {
+    return map_of_surface(collider)->view().border.empty(); // an open surface has none
+}
+
+std::vector<SurfaceLayer> layers_of(const TriangleMesh& surface, const PartOptions& options) {
+    if (options.layers.empty()) {
+        std::vector<std::uint32_t> all(surface.vertices.size());
+        std::iota(all.begin(), all.end(), 0U);
+        return {{surface, all, options.pinned}};
+    }
+    std::map<std::uint8_t, SurfaceLayer> layers;
+    std::vector<std::uint32_t> in_layer;
+    for (std::uint32_t v = 0; v < surface.vertices.size(); ++v) {
+        SurfaceLayer& layer = layers[options.layers[v]];
+        in_layer.push_back(static_cast<std::uint32_t>(layer.vertices.size()));
+        layer.vertices.push_back(v);
+        layer.mesh.vertices.push_back(surface.vertices[v]);
+        if (!options.pinned.empty()) layer.pinned.push_back(options.pinned[v]);
+    }
+    for (const auto& [a, b, c] : surface.faces)
+        layers[options.layers[a]].mesh.faces.push_back({in_layer[a], in_layer[b], in_layer[c]});
+    std::vector<SurfaceLayer> ordered;
+    for (auto& [number, layer] : layers)
+        if (!layer.mesh.faces.empty()) ordered.push_back(std::move(layer));
+    return ordered;
+}
+
+void turn_outward(TriangleMesh& layer, const std::vector<Collider>& colliders) {
+    double agreement = 0;
+    for (const Collider& collider : colliders) {
+        if (!has_inside(collider)) continue;
+        for (const auto& [a, b, c] : layer.faces) {
+            const Vec3f &p = layer.vertices[a], &q = layer.vertices[b], &r = layer.vertices[c];
+            const Vec3f outward =
+                contact(collider, (p + q + r) * (1.0F / 3), std::numeric_limits<float>::infinity()).normal;
+            agreement += double{dot(cross(q - p, r - p), outward)};
+        }
+    }
+    if (agreement < 0)
+        for (Triangle& face : layer.faces) std::swap(face[1], face[2]);
+}
+
+} // namespace echinus
