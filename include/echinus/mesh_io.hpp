@@ -64,6 +64,14 @@ MeshAndEdges read_mesh_and_edges(const std::filesystem::path& path);
 /// @throws Error Unwritable, WrongFormat for any other extension, or InvalidMesh as inspect() does
 void write_mesh(const std::filesystem::path& path, const TriangleMesh& mesh);
 
+/// Writes a mesh like the file from which read_mesh() read it before its vertices moved: in an OBJ that is
+/// written as an OBJ, polygons, texture coordinates, normals, groups, materials and comments stay as they
+/// are. Other files are written by write_mesh().
+/// @throws Error as write_mesh() and read_mesh() do; InvalidMesh also for another number of vertices than in
+/// the original
+void write_moved_mesh(const std::filesystem::path& path, const TriangleMesh& mesh,
+                      const std::filesystem::path& original);
+
 /// Writes a mesh and its edges, as lines of an OBJ. Other formats are allowed only without edges.
 /// @throws Error as write_mesh() does; WrongFormat if the format has no lines, InvalidMesh if an edge refers
 /// to a vertex that does not exist

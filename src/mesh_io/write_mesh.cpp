@@ -1,8 +1,10 @@
 #include "mesh_io/write_mesh.hpp"
 
 #include "files/atomic_file.hpp"
+#include "files/read_file.hpp"
 #include "mesh_io/line_scanner.hpp"
 #include "mesh_io/mesh_source.hpp"
+#include "mesh_io/readers.hpp"
 
 #include <echinus/error.hpp>
 #include <echinus/mesh_io.hpp>
@@ -12,7 +14,9 @@
 #include <bit>
 #include <charconv>
 #include <limits>
+#include <map>
 #include <string_view>
+#include <utility>
 
 namespace echinus {
 
@@ -25,14 +29,20 @@ void append_text(std::string& text, Number value) {
     text.append(digits.data(), result.ptr);
 }
 
-/// "x y z\n"
+/// "x y z"
 template <typename Number>
-void append_line(std::string& text, Number x, Number y, Number z) {
+void append_three(std::string& text, Number x, Number y, Number z) {
     append_text(text, x);
     text += ' ';
     append_text(text, y);
     text += ' ';
     append_text(text, z);
+}
+
+/// "x y z\n"
+template <typename Number>
+void append_line(std::string& text, Number x, Number y, Number z) {
+    append_three(text, x, y, z);
     text += '\n';
 }
 
@@ -72,14 +82,18 @@ Vec3d in_file(const Vec3f& local, const Vec3d& origin) {
     return {in_file(local.x, origin.x), in_file(local.y, origin.y), in_file(local.z, origin.z)};
 }
 
-/// Writes positions in the frame of files: as floats, or as doubles if the mesh has an origin.
+/// Writes a position in the frame of files: as floats, or as doubles if the mesh has an origin.
+template <typename Mesh, typename Write>
+void write_position(const Mesh& mesh, const Vec3f& vertex, const Write& write) {
+    if (has_origin(mesh))
+        write(in_file(vertex, mesh.origin));
+    else
+        write(vertex);
+}
+
 template <typename Mesh, typename Write>
 void for_each_position(const Mesh& mesh, const Write& write) {
-    for (const Vec3f& vertex : mesh.vertices)
-        if (has_origin(mesh))
-            write(in_file(vertex, mesh.origin));
-        else
-            write(vertex);
+    for (const Vec3f& vertex : mesh.vertices) write_position(mesh, vertex, write);
 }
 
 Vec3f unit_normal(const TriangleMesh& mesh, const Triangle& face) {
@@ -114,6 +128,38 @@ std::string encode_obj_lines(std::span<const std::array<std::uint32_t, 2>> edges
         text += '\n';
     }
     return text;
+}
+
+std::string encode_moved_obj(const MeshSource& source, const TriangleMesh& before, const TriangleMesh& mesh) {
+    if (mesh.vertices.size() != before.vertices.size())
+        source.fail(ErrorCode::InvalidMesh, "the file has " + std::to_string(before.vertices.size()) +
+                                                " vertices of faces, but the mesh that moved has " +
+                                                std::to_string(mesh.vertices.size()));
+    std::map<std::array<float, 3>, std::size_t> vertices; // at one position there is one vertex
+    for (std::size_t v = 0; v < before.vertices.size(); ++v) {
+        const auto& [x, y, z] = before.vertices[v];
+        vertices[{x, y, z}] = v;
+    }
+    std::string text;
+    const char* written = source.bytes.data(); // up to here
+    LineScanner scanner(source, LineScanner::Continuation::Backslash);
+    while (scanner.next_line()) {
+        if (scanner.next_word() != "v") continue;
+        if (scanner.is_joined())
+            scanner.fail(ErrorCode::WrongFormat, "a vertex on several lines cannot be replaced");
+        const std::string_view x = scanner.next_word(), y = scanner.next_word(), z = scanner.next_word();
+        std::array<double, 3> position{};
+        for (const auto& [word, value] : {std::pair{x, &position[0]}, {y, &position[1]}, {z, &position[2]}})
+            if (!parse_number(word, *value)) scanner.fail_expecting("a coordinate", word);
+        const Vec3f local(Vec3d{position[0], position[1], position[2]} - before.origin);
+        const auto found = vertices.find({local.x, local.y, local.z});
+        if (found == vertices.end()) continue; // no face has it
+        text.append(written, x.data());
+        write_position(mesh, mesh.vertices[found->second],
+                       [&](const auto& p) { append_three(text, p.x, p.y, p.z); });
+        written = z.data() + z.size();
+    }
+    return text.append(written, source.bytes.data() + source.bytes.size());
 }
 
 std::string encode_off(const TriangleMesh& mesh) {
@@ -261,6 +307,16 @@ void write_mesh(const std::filesystem::path& path, const TriangleMesh& mesh) {
     const Encode encode = encoder_for(path);
     require_valid(mesh);
     write_file(path, encode(mesh));
+}
+
+void write_moved_mesh(const std::filesystem::path& path, const TriangleMesh& mesh,
+                      const std::filesystem::path& original) {
+    if (encoder_for(path) != encode_obj || lower_case_ending(original) != ".obj")
+        return write_mesh(path, mesh);
+    require_valid(mesh);
+    const std::vector<std::byte> bytes = read_file(original);
+    const MeshSource source{original.string(), {reinterpret_cast<const char*>(bytes.data()), bytes.size()}};
+    write_file(path, encode_moved_obj(source, read_mesh(source), mesh));
 }
 
 void write_mesh_and_edges(const std::filesystem::path& path, const MeshAndEdges& drawn) {

@@ -1,5 +1,7 @@
 #pragma once
 
+#include "mesh_io/mesh_source.hpp"
+
 #include <echinus/mesh.hpp>
 #include <echinus/tetrahedra.hpp>
 
@@ -15,6 +17,10 @@ namespace echinus {
 // @pre indices are in range
 
 std::string encode_obj(const TriangleMesh& mesh);
+/// An OBJ file with other positions for its vertices.
+/// @param before  as read_mesh() reads it
+/// @throws Error InvalidMesh for another number of vertices; WrongFormat for a vertex on several lines
+std::string encode_moved_obj(const MeshSource& source, const TriangleMesh& before, const TriangleMesh& mesh);
 /// The part of an OBJ file with edges that belong to no face.
 std::string encode_obj_lines(std::span<const std::array<std::uint32_t, 2>> edges);
 std::string encode_off(const TriangleMesh& mesh);

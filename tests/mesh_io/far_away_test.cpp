@@ -80,11 +80,6 @@ std::string binary_ply(const std::string& type) {
     return bytes;
 }
 
-std::string content_of(const fs::path& path) {
-    std::ifstream stream(path, std::ios::binary);
-    return {std::istreambuf_iterator<char>(stream), {}};
-}
-
 void expect_same(const TriangleMesh& a, const TriangleMesh& b) {
     EXPECT_EQ(a.vertices, b.vertices);
     EXPECT_EQ(a.faces, b.faces);

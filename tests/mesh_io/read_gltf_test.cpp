@@ -72,8 +72,7 @@ class ReadGltf : public TemporaryFolderTest {
     std::string exported(const ExportedKind& kind) const {
         const fs::path file = path(std::string("exported") + kind.ending);
         export_with_assimp(file, kBoxInGltf, kind);
-        std::ifstream stream(file, std::ios::binary);
-        return {std::istreambuf_iterator<char>(stream), {}};
+        return content_of(file);
     }
 
     void expect_refused(ErrorCode code, const std::string& words, const std::string& name,

@@ -16,11 +16,6 @@ namespace fs = std::filesystem;
 
 namespace {
 
-std::string bytes_of_file(const fs::path& path) {
-    std::ifstream stream(path, std::ios::binary);
-    return {std::istreambuf_iterator<char>(stream), {}};
-}
-
 /// The files that the fuzzer starts from: the same two tetrahedra in every format.
 std::vector<fs::path> samples() {
     std::vector<fs::path> paths;
@@ -48,7 +43,7 @@ class ReadTetrahedra : public TemporaryFolderTest {
         expect_error(code, file.string() + ": ", [&] { read_tetrahedra(file); });
     }
     std::string sample(const std::string& name) const {
-        return bytes_of_file(fs::path(ECHINUS_TETRAHEDRA) / name);
+        return content_of(fs::path(ECHINUS_TETRAHEDRA) / name);
     }
 };
 
@@ -60,7 +55,7 @@ TEST_F(ReadTetrahedra, GivesTheSameBodyFromEveryFormat) {
     EXPECT_EQ(paths.size(), 10U);
     for (const fs::path& path : paths) {
         SCOPED_TRACE(path);
-        const TetrahedraFile file = read_any_tetrahedra(bytes_of_file(path));
+        const TetrahedraFile file = read_any_tetrahedra(content_of(path));
         EXPECT_EQ(file.mesh.vertices, vertices);
         EXPECT_EQ(file.mesh.tetrahedra, (std::vector<Tetrahedron>{{0, 1, 2, 3}, {1, 2, 3, 4}}));
         EXPECT_EQ(file.turned_tetrahedra, 0U);
@@ -223,7 +218,7 @@ TEST_F(ReadTetrahedra, NamesTheByteInBinaryFiles) {
 TEST_F(ReadTetrahedra, RefusesEveryFileThatIsCut) {
     for (const fs::path& path : samples()) {
         SCOPED_TRACE(path);
-        const std::string whole = bytes_of_file(path);
+        const std::string whole = content_of(path);
         std::size_t end = whole.find_last_not_of('\n');
         // TetGen's last word is a region, which may be missing; VTK's data are none of ours.
         if (path.extension() == ".tetgen") end -= 3;

@@ -7,6 +7,7 @@
 
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 #include <string>
 #include <string_view>
 
@@ -18,6 +19,11 @@ inline std::filesystem::path folder_of_test() {
     const auto* test = testing::UnitTest::GetInstance()->current_test_info();
     return std::filesystem::temp_directory_path() / (std::string("echinus_") + test->test_suite_name() + "_" +
                                                      test->name() + "_" + std::to_string(getpid()));
+}
+
+inline std::string content_of(const std::filesystem::path& path) {
+    std::ifstream stream(path, std::ios::binary);
+    return {std::istreambuf_iterator<char>(stream), {}};
 }
 
 /// A test with its own empty folder, which is removed at its end.

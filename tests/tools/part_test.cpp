@@ -6,6 +6,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include <cmath>
 #include <string>
 
 using namespace echinus;
@@ -43,6 +44,27 @@ TEST_F(PartCommand, MovesASheetOutOfABallAndTellsHowMuchItIsStretched) {
     EXPECT_NE(expect_success({"part", "sheet.obj", "-o", "-"}).find("\nf "), std::string::npos);
 }
 
+TEST_F(PartCommand, BringsSeveralMeshesIntoTheirOrderAndKeepsWhatElseTheirFilesHold) {
+    const TriangleMesh flat = sheet_mesh(15, 15);
+    TriangleMesh wave = translated(sheet_mesh(15, 15), {0.003F, 0.002F, 0});
+    for (Vec3f& v : wave.vertices) v.z = 0.05F * std::sin(9 * v.x);
+    write("inner.obj", "# lining\nvt 0.5 0.5\n" + obj_text(flat));
+    write("outer.obj", obj_text(wave));
+    const json result =
+        json::parse(expect_success({"part", "inner.obj", "outer.obj", "-o", "parted", "--json"}));
+    EXPECT_GT(result["own_pairs_before"], 0);
+    EXPECT_EQ(result["own_pairs"], 0);
+    EXPECT_TRUE(content("parted/inner.obj").starts_with("# lining\nvt 0.5 0.5\nv "));
+    const TriangleMesh inner = read_mesh(path("parted/inner.obj")),
+                       outer = read_mesh(path("parted/outer.obj"));
+    EXPECT_TRUE(intersecting_pairs(inner, outer).empty());
+    EXPECT_GT(outer.vertices[112].z, inner.vertices[112].z);
+    const std::string swapped = expect_success({"part", "outer.obj", "inner.obj", "-o", "parted"});
+    EXPECT_NE(swapped.find("pairs with themselves and each other"), std::string::npos) << swapped;
+    EXPECT_LT(read_mesh(path("parted/outer.obj")).vertices[112].z,
+              read_mesh(path("parted/inner.obj")).vertices[112].z);
+}
+
 TEST_F(PartCommand, FailsForWhatCannotBePartedUnlessTheBestIsWanted) {
     write("bottle.obj", obj_text(klein_bottle()));
     expect_failure(1, "bottle.obj could not be parted: ", {"part", "bottle.obj", "-o", "parted.obj"});
@@ -58,4 +80,7 @@ TEST_F(PartCommand, RefusesArgumentsThatMakeNoSense) {
     expect_failure(1, "none.obj", {"part", "sheet.obj", "--model", "none.obj", "-o", "a.obj"});
     expect_failure(2, "the thickness is 0", {"part", "sheet.obj", "-o", "a.obj", "--thickness", "0"});
     expect_failure(2, "named twice", {"part", "-", "--model", "-", "-o", "a.obj"});
+    expect_failure(2, "several meshes need a folder", {"part", "sheet.obj", "ball.obj", "-o", "-"});
+    expect_failure(2, "two meshes are called sheet.obj", {"part", "sheet.obj", "other/sheet.obj", "-o", "a"});
+    expect_failure(2, "input file", {"part", "sheet.obj", "ball.obj", "-o", "."});
 }

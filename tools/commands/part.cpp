@@ -11,12 +11,15 @@
 #include <echinus/surface_collision.hpp>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <set>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -26,13 +29,67 @@ namespace fs = std::filesystem;
 namespace {
 
 struct PartArguments {
-    MeshArgument surface;
+    std::vector<fs::path> meshes; ///< layers from the inside to the outside
+    MeshArgument standard_input;  ///< its format
     std::vector<fs::path> models;
-    fs::path target;
+    fs::path target; ///< a file, or a folder for several meshes
     std::optional<double> thickness;
     std::uint32_t thread_count = 0;
     bool takes_best = false; ///< even if something still intersects
     bool json = false;
+
+    MeshArgument mesh(std::size_t i) const { return {meshes[i], standard_input.format}; }
+    MeshArgument model(std::size_t i) const { return {models[i], standard_input.format}; }
+};
+
+/// Meshes joined to a single surface in the frame of the first.
+class JoinedMeshes {
+  public:
+    explicit JoinedMeshes(const PartArguments& arguments) {
+        for (std::size_t i = 0; i < arguments.meshes.size(); ++i) {
+            parts_.push_back(read_mesh(arguments.mesh(i)));
+            names_.push_back(arguments.mesh(i).name());
+            move_to_frame(parts_[0].origin, parts_[i], names_[i]);
+            add(parts_[i]);
+        }
+    }
+
+    const TriangleMesh& surface() const { return surface_; }
+    /// [vertex] its mesh; empty for a single one
+    std::vector<std::uint8_t> layers() const {
+        std::vector<std::uint8_t> layers;
+        if (parts_.size() > 1)
+            for (std::size_t i = 0; i < parts_.size(); ++i)
+                layers.insert(layers.end(), parts_[i].vertices.size(), static_cast<std::uint8_t>(i));
+        return layers;
+    }
+    /// A mesh with other positions, in the frame of the first.
+    TriangleMesh moved(std::size_t i, std::span<const Vec3f> vertices) const {
+        std::size_t first = 0;
+        for (std::size_t j = 0; j < i; ++j) first += parts_[j].vertices.size();
+        const auto own = vertices.subspan(first, parts_[i].vertices.size());
+        return {{own.begin(), own.end()}, parts_[i].faces, surface_.origin};
+    }
+    std::string name() const { return fmt::format("{}", fmt::join(names_, ", ")); }
+    /// The name of a face: its number, and with several meshes that of its file.
+    std::string face(std::uint32_t number) const {
+        std::size_t i = 0;
+        for (; number >= parts_[i].faces.size(); ++i)
+            number -= static_cast<std::uint32_t>(parts_[i].faces.size());
+        return parts_.size() > 1 ? fmt::format("{} of {}", number, names_[i]) : fmt::format("{}", number);
+    }
+
+  private:
+    void add(const TriangleMesh& part) {
+        const auto first = static_cast<std::uint32_t>(surface_.vertices.size());
+        surface_.origin = part.origin;
+        surface_.vertices.insert(surface_.vertices.end(), part.vertices.begin(), part.vertices.end());
+        for (const auto& [a, b, c] : part.faces) surface_.faces.push_back({a + first, b + first, c + first});
+    }
+
+    std::vector<TriangleMesh> parts_;
+    std::vector<std::string> names_;
+    TriangleMesh surface_;
 };
 
 /// What intersects, by the names of files.
@@ -63,10 +120,12 @@ Json json_of(const PartArguments& arguments, const Counts& before, const Parted&
             {"largest_stretch", parted.largest_stretch}};
 }
 
-std::string text_of(const PartArguments& arguments, const Counts& before, const Parted& parted) {
-    Table table(arguments.surface.name());
+std::string text_of(const PartArguments& arguments, const JoinedMeshes& meshes, const Counts& before,
+                    const Parted& parted) {
+    Table table(meshes.name());
     const auto change = [](std::size_t from, std::size_t to) { return fmt::format("{}, now {}", from, to); };
-    table.add("pairs with itself", change(before.own_pairs, parted.own_pairs.size()));
+    table.add(arguments.meshes.size() > 1 ? "pairs with themselves and each other" : "pairs with itself",
+              change(before.own_pairs, parted.own_pairs.size()));
     for (std::size_t i = 0; i < arguments.models.size(); ++i)
         table.add("pairs with " + name_of_input(arguments.models[i]),
                   change(before.model_pairs[i], parted.model_pairs[i].size()));
@@ -77,71 +136,107 @@ std::string text_of(const PartArguments& arguments, const Counts& before, const 
 }
 
 /// What still intersects, as a sentence.
-std::string remaining(const PartArguments& arguments, const Parted& parted) {
+std::string remaining(const PartArguments& arguments, const JoinedMeshes& meshes, const Parted& parted) {
     std::string text;
     const auto add = [&](const std::string& what) { text += (text.empty() ? "" : ", ") + what; };
     if (!parted.own_pairs.empty())
-        add(fmt::format("{} pairs with itself (first {} and {})", parted.own_pairs.size(),
-                        parted.own_pairs[0].a, parted.own_pairs[0].b));
+        add(fmt::format("{} pairs of its own faces (first {} and {})", parted.own_pairs.size(),
+                        meshes.face(parted.own_pairs[0].a), meshes.face(parted.own_pairs[0].b)));
     for (std::size_t i = 0; i < arguments.models.size(); ++i)
         if (const std::vector<FacePair>& pairs = parted.model_pairs[i]; !pairs.empty())
             add(fmt::format("{} pairs with {} (first {} and {})", pairs.size(),
-                            name_of_input(arguments.models[i]), pairs[0].a, pairs[0].b));
+                            name_of_input(arguments.models[i]), meshes.face(pairs[0].a), pairs[0].b));
     if (!parted.inside.empty())
         add(fmt::format("{} vertices inside a model (first {})", parted.inside.size(), parted.inside[0]));
     return text;
 }
 
+void require_names_that_differ(const std::vector<fs::path>& meshes) {
+    std::set<fs::path> names;
+    for (const fs::path& mesh : meshes) {
+        if (mesh == kStandardStream) throw WrongUse("MESH", "standard input (-) can only be the single mesh");
+        if (!names.insert(mesh.filename()).second)
+            throw WrongUse("MESH", "two meshes are called " + mesh.filename().string() +
+                                       "; the folder for the results needs different names");
+    }
+}
+
 void require_arguments(const PartArguments& arguments) {
+    constexpr std::size_t kMostLayers = 256;
     const auto is_standard = [](const fs::path& path) { return path == kStandardStream; };
-    if (std::ranges::count_if(arguments.models, is_standard) + (is_standard(arguments.surface.path) ? 1 : 0) >
+    if (std::ranges::count_if(arguments.models, is_standard) +
+            std::ranges::count_if(arguments.meshes, is_standard) >
         1)
         throw WrongUse("--model", "standard input (-) is named twice");
     require_one_result(arguments.target, arguments.json);
-    require_another_file(arguments.surface.path, arguments.target);
+    if (arguments.meshes.size() > kMostLayers)
+        throw WrongUse("MESH", fmt::format("there are more than {} layers", kMostLayers));
+    if (arguments.meshes.size() > 1) {
+        require_names_that_differ(arguments.meshes);
+        if (is_standard(arguments.target)) throw WrongUse("--output", "several meshes need a folder");
+        for (const fs::path& mesh : arguments.meshes)
+            require_another_file(mesh, arguments.target / mesh.filename());
+        return;
+    }
+    require_another_file(arguments.meshes[0], arguments.target);
     for (const fs::path& model : arguments.models) require_another_file(model, arguments.target);
 }
 
-TriangleMesh read_model(const fs::path& path, const Vec3d& origin, const std::string& format) {
-    TriangleMesh model = read_mesh({.path = path, .format = format});
-    move_to_frame(origin, model, name_of_input(path));
+TriangleMesh read_model(const MeshArgument& argument, const Vec3d& origin) {
+    TriangleMesh model = read_mesh(argument);
+    move_to_frame(origin, model, argument.name());
     if (!inspect(model).closed)
-        warn(name_of_input(path) + " is open, so it has no inside that the surface could leave; see echinus "
-                                   "mesh repair");
+        warn(argument.name() + " is open, so it has no inside that the surface could leave; see echinus "
+                               "mesh repair");
     return model;
+}
+
+void write_results(const PartArguments& arguments, const JoinedMeshes& meshes,
+                   std::span<const Vec3f> vertices) {
+    const auto write = [&](std::size_t i, const fs::path& target) {
+        const TriangleMesh mesh = meshes.moved(i, vertices);
+        if (target == kStandardStream)
+            print(encode_obj(mesh));
+        else if (arguments.meshes[i] == kStandardStream)
+            write_mesh(target, mesh);
+        else
+            write_moved_mesh(target, mesh, arguments.meshes[i]);
+    };
+    if (arguments.meshes.size() == 1) return write(0, arguments.target);
+    OutputFolder folder(arguments.target);
+    for (std::size_t i = 0; i < arguments.meshes.size(); ++i)
+        write(i, folder.path_of(arguments.meshes[i].filename().string()));
+    folder.commit();
 }
 
 void run(const PartArguments& arguments) {
     require_arguments(arguments);
-    TriangleMesh surface = read_mesh(arguments.surface);
+    const JoinedMeshes meshes(arguments);
     std::vector<TriangleMesh> models;
-    for (const fs::path& path : arguments.models)
-        models.push_back(read_model(path, surface.origin, arguments.surface.format));
-    const Counts before = counts_of(surface, models);
+    for (std::size_t i = 0; i < arguments.models.size(); ++i)
+        models.push_back(read_model(arguments.model(i), meshes.surface().origin));
+    const Counts before = counts_of(meshes.surface(), models);
     Parted parted;
     {
         ProgressBar bar("parting");
-        parted = part(surface, models,
+        parted = part(meshes.surface(), models,
                       {.thickness = arguments.thickness,
+                       .layers = meshes.layers(),
                        .thread_count = arguments.thread_count,
                        .progress = [&bar](double share) { bar(share); }});
     }
     if (!parted.is_apart()) {
         const std::string sentence =
-            arguments.surface.name() + " could not be parted: " + remaining(arguments, parted);
+            meshes.name() + " could not be parted: " + remaining(arguments, meshes, parted);
         if (!arguments.takes_best)
             throw Error(ErrorCode::InvalidMesh, sentence + "; --best writes the result nevertheless");
         warn(sentence + "; echinus check --pairs shows where");
     }
-    surface.vertices = parted.vertices;
-    if (arguments.target == kStandardStream)
-        print(encode_obj(surface));
-    else
-        write_mesh(arguments.target, surface);
+    write_results(arguments, meshes, parted.vertices);
     if (arguments.json)
         print(json_of(arguments, before, parted).indented());
     else if (arguments.target != kStandardStream)
-        print(text_of(arguments, before, parted));
+        print(text_of(arguments, meshes, before, parted));
 }
 
 } // namespace
@@ -151,15 +246,18 @@ void add_part_command(Command program) {
         "part", "Move a surface such as a garment out of models and out of itself, with little stretch");
     const auto arguments = std::make_shared<PartArguments>();
     command
-        .add("MESH", &arguments->surface.path,
-             "Mesh to move: OBJ, PLY, STL, OFF, glTF, GLB, 3DS, or - for standard input")
+        .add("MESH", &arguments->meshes,
+             "Mesh to move: OBJ, PLY, STL, OFF, glTF, GLB, 3DS, or - for standard input; or several, the "
+             "layers "
+             "from the inside to the outside")
         .required()
-        .type_name("");
+        .type_name("...");
     command.add("--model", &arguments->models, "Meshes that stay, such as a body; closed ones have an inside")
         .type_name("FILE ...");
     command
         .add("-o,--output", &arguments->target,
-             "File to write: .obj, .ply, .stl or .off; - for OBJ on standard output")
+             "File to write: .obj, .ply, .stl or .off; - for OBJ on standard output; a folder for several "
+             "meshes")
         .required();
     command
         .add("--thickness", &arguments->thickness,
@@ -169,10 +267,11 @@ void add_part_command(Command program) {
         .range(0, 1024)
         .type_name("COUNT")
         .show_default();
-    arguments->surface.add_format_option(command);
+    arguments->standard_input.add_format_option(command);
     command.add_flag("--best", arguments->takes_best,
                      "Write the result with the fewest intersections, instead of failing, if some remain");
     command.add_flag("--json", arguments->json, "Print one JSON object");
-    command.footer("Example:\n  echinus part dress.obj --model body.obj -o dressed.obj");
+    command.footer("Examples:\n  echinus part dress.obj --model body.obj -o dressed.obj\n"
+                   "  echinus part shirt.obj jacket.obj --model body.obj -o dressed");
     command.action([arguments] { run(*arguments); });
 }
