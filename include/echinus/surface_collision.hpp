@@ -108,9 +108,9 @@ class SurfaceCollision {
 struct PartOptions {
     /// The material that resists the displacements; its weight has no effect.
     ClothMaterial material{};
-    /// Distance in units, above 0, from which contact pushes the surface off the models; layers off each
-    /// other, too, but less near small faces. Where the material presses, the distance is less. By default a
-    /// tenth of the mean edge length.
+    /// Distance in units, above 0 and at most four mean edge lengths, from which contact pushes the surface
+    /// off the models; layers off each other, too, but less near small faces. Where the material presses, the
+    /// distance is less. By default a tenth of the mean edge length. The cost grows with its square.
     std::optional<double> thickness{};
     /// [vertex_count] 1 for vertices that stay where they are, otherwise 0; or empty.
     std::vector<std::uint8_t> pinned = {};

@@ -20,6 +20,9 @@ namespace {
 
 /// The thickness, in mean edge lengths, that a parted surface keeps by default.
 constexpr double kDefaultThickness = 0.1;
+/// The largest thickness, in mean edge lengths. The number of faces that a vertex has to keep off grows with
+/// its square; twice as much takes gigabytes.
+constexpr double kMostThicknessInEdges = 4;
 /// The largest number of frames in which the material contracts, and the largest displacement of a particle
 /// in a frame, in mean edge lengths, with which it counts as contracted.
 constexpr int kMostFrames = 30;
@@ -172,6 +175,8 @@ Parted part(const TriangleMesh& surface, std::span<const TriangleMesh> given_mod
     const SimulationOptions simulation = simulation_options(options, edge_length);
     require_valid(simulation);
     require_option(*simulation.thickness > 0, "the thickness is 0; parted surfaces need a distance");
+    require_option(*simulation.thickness <= kMostThicknessInEdges * edge_length,
+                   "the thickness is more than four times the mean edge length");
     require_valid(deformable);
     require_valid(colliders, simulation);
     Parted parted{.vertices = deformable.positions};

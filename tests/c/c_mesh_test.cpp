@@ -1,4 +1,5 @@
 #include "handles.hpp"
+#include "support/meshes.hpp"
 #include "support/random_points.hpp"
 #include "support/temporary_folder.hpp"
 
@@ -6,6 +7,7 @@
 #include <echinus/intersections.hpp>
 #include <echinus/mesh.hpp>
 #include <echinus/mesh_io.hpp>
+#include <echinus/surface_collision.hpp>
 #include <echinus/tetrahedra.hpp>
 
 #include <gtest/gtest.h>
@@ -270,6 +272,31 @@ TEST(CMeshes, AreCheckedAsInCpp) {
     addresses[1] = nullptr;
     expect_refused(echinus_check(addresses.data(), addresses.size(), 0, out(array)), ECHINUS_INVALID_ARGUMENT,
                    "a mesh");
+}
+
+TEST(CMesh, IsPartedAsInCpp) {
+    const TriangleMesh sheet = translated(sheet_mesh(9, 9), {0, 0, 0.1F}), ball = make_sphere(0.3, 16, 8);
+    const CMesh surface = c_mesh_of(sheet), model = c_mesh_of(ball);
+    const echinus_mesh* models[] = {model.get()};
+    std::vector<std::uint8_t> pinned(81), layers(81, 4);
+    pinned[0] = 1;
+    CMesh parted;
+    echinus_part_report report{};
+    report.size = sizeof report;
+    expect_ok(echinus_mesh_part(surface.get(), models, 1, pinned.data(), layers.data(), 0, 1, out(parted),
+                                &report));
+    TriangleMesh moved = sheet;
+    const Parted expected = part(sheet, std::vector{ball}, {.pinned = pinned, .layers = layers});
+    moved.vertices = expected.vertices;
+    expect_same_mesh(parted, moved);
+    EXPECT_EQ(report.own_pairs + report.model_pairs + report.inside_count, 0U);
+    EXPECT_EQ(report.largest_stretch, expected.largest_stretch);
+    EXPECT_EQ(report.stretched_share, expected.stretched_share);
+    expect_refused(echinus_mesh_part(surface.get(), models, 1, nullptr, nullptr, -1, 0, out(parted), nullptr),
+                   ECHINUS_INVALID_OPTIONS, "thickness");
+    models[0] = nullptr;
+    expect_refused(echinus_mesh_part(surface.get(), models, 1, nullptr, nullptr, 0, 0, out(parted), nullptr),
+                   ECHINUS_INVALID_ARGUMENT, "a mesh");
 }
 
 TEST_F(CMeshFile, IsWrittenAndReadAsInCpp) {

@@ -262,6 +262,8 @@ TEST(Part, NamesTheModelOrTheOptionAtFault) {
     TriangleMesh hostile = sheet;
     hostile.faces[3][1] = 400;
     expect_error(ErrorCode::InvalidMesh, "", [&] { part(hostile, {}, mixed); });
+    expect_error(ErrorCode::InvalidOptions, "the thickness is more than four times the mean edge length",
+                 [&] { part(sheet, {}, {.thickness = 2}); });
     expect_error(ErrorCode::InvalidOptions, "the thickness is 0", [&] { part(sheet, {}, {.thickness = 0}); });
     expect_error(ErrorCode::InvalidMesh, "", [&] { part({}, {}); });
 }

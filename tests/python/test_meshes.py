@@ -106,12 +106,17 @@ def test_intersections_are_listed_by_pairs():
     assert len(ech.intersecting_pairs(box, ech.Mesh(box.vertices + np.float32(3), box.faces))) == 0
 
 
-def test_a_surface_is_parted_from_models_and_from_itself():
+def sheet_at(height):
+    """A sheet of 20 x 20 vertices at the height that a function of x gives."""
     line = np.linspace(-0.6, 0.6, 20, dtype=np.float32)
     x, y = (grid.ravel() for grid in np.meshgrid(line, line))
     corners = np.array([[20 * i + j, 20 * i + j + 1, 20 * (i + 1) + j] for i in range(19) for j in range(19)])
     faces = np.concatenate([corners, np.stack([corners[:, 1], corners[:, 2] + 1, corners[:, 2]], axis=1)]).astype(np.uint32)
-    sheet = ech.Mesh(np.stack([x, y, 0.1 + 0 * x], axis=1), faces)
+    return ech.Mesh(np.stack([x, y, height(x)], axis=1), faces)
+
+
+def test_a_surface_is_parted_from_models_and_from_itself():
+    sheet = sheet_at(lambda x: 0.1 + 0 * x)
     ball = ech.make_sphere(0.4, 24, 12)
     assert len(ech.intersecting_pairs(sheet, ball)) > 0
     parted = ech.part(sheet, [ball])
@@ -126,10 +131,35 @@ def test_a_surface_is_parted_from_models_and_from_itself():
     assert np.array_equal(held.mesh.vertices[190], sheet.vertices[190])
     with pytest.raises(TypeError, match="pinned must be an array of booleans"):
         ech.part(sheet, pinned=[190])
+    with pytest.raises(TypeError, match="mesh must be a mesh or a list of 1 to 256 meshes"):
+        ech.part([])
     with pytest.raises(TypeError, match=r"models must be a list of meshes, such as \[body\]"):
         ech.part(sheet, ball)
     with pytest.raises(ech.Error, match="model 0: "):
         ech.part(sheet, [ech.Mesh([[0, 0, 0]] * 3, [[0, 1, 2]])])
+
+
+def test_layers_are_brought_into_the_order_in_which_they_are_given():
+    lining, coat = sheet_at(lambda x: 0.05 * np.sin(9 * x)), sheet_at(lambda x: 0.05 * np.sin(9 * x + 2))
+    assert len(ech.intersecting_pairs(lining, coat)) > 0
+    for layers in ([lining, coat], [coat, lining]):
+        parted = ech.part(layers)
+        assert parted.is_apart and len(parted.meshes) == 2
+        assert len(ech.intersecting_pairs(*parted.meshes)) == 0
+        assert np.array_equal(np.concatenate([mesh.vertices for mesh in parted.meshes]), parted.mesh.vertices)
+        assert np.array_equal(parted.meshes[1].faces, layers[1].faces)
+        inner, outer = (mesh.vertices[:, 2].reshape(20, 20)[2:-2, 2:-2] for mesh in parted.meshes)
+        assert (inner < outer).all()
+
+
+def test_an_obj_whose_vertices_moved_keeps_its_other_statements(tmp_path):
+    original, moved = tmp_path / "original.obj", tmp_path / "moved.obj"
+    original.write_text("o dress\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nf 1/1 2/1 3/1 4/1\n")
+    mesh = ech.read_mesh(original)
+    ech.write_mesh(moved, ech.Mesh(mesh.vertices + np.float32([0, 0, 2]), mesh.faces), original=original)
+    assert moved.read_text() == "o dress\nv 0 0 2\nv 1 0 2\nv 1 1 2\nv 0 1 2\nvt 0 0\nf 1/1 2/1 3/1 4/1\n"
+    with pytest.raises(ech.Error, match="original.obj: the file has 4 vertices of faces"):
+        ech.write_mesh(moved, ech.make_box(), original=original)
 
 
 def test_meshes_are_checked_for_what_intersects_along_which_curves_and_how_deep():

@@ -47,7 +47,7 @@ CALLS = [
     (ech.make_sphere, {}),
     (ech.make_box, {}),
     (ech.read_mesh, {"path": "none.obj"}),
-    (ech.write_mesh, {"path": "none/none.obj", "mesh": MESH}),
+    (ech.write_mesh, {"path": "none/none.obj", "mesh": MESH, "original": "none.obj"}),
     (ech.ExactMap, {"mesh": MESH}),
     (ech.DistanceMap, {"mesh": MESH}),
     (EXACT.contains, {"points": POINTS}),

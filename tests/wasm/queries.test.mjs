@@ -95,6 +95,24 @@ describe('A mesh', () => {
         assert.throws(() => echinus.check([torus, {}]), { code: 'InvalidArgument' });
         assert.throws(() => torus.intersections({}), { code: 'InvalidArgument' });
     });
+    test('is parted from models and from layers, and the report counts what still intersects', () => {
+        const [torus, ball] = [echinus.makeTorus(1, 0.3, 24, 12), echinus.makeSphere(0.3, 16, 8)];
+        const moved = echinus.makeMesh(ball.vertices.map((x, i) => x + (i % 3 === 0 ? 0.95 : 0.01)), ball.faces);
+        const { mesh, report } = torus.part([moved]);
+        assert.deepEqual([report.ownPairs, report.modelPairs, report.insideCount], [0, 0, 0]);
+        assert.ok(report.largestStretch > 0 && mesh.intersectingPairs(moved).length === 0);
+        const pinned = new Uint8Array(torus.vertexCount).fill(1);
+        assert.ok(torus.part([moved], { pinned }).report.modelPairs > 0);
+        assert.deepEqual(torus.part([moved], { pinned }).mesh.vertices, torus.vertices);
+        const two = echinus.makeMesh([...ball.vertices, ...moved.vertices.map((x, i) => x - (i % 3 === 0 ? 0.9 : 0))],
+            [...ball.faces, ...ball.faces.map((v) => v + ball.vertexCount)]);
+        const layers = Uint8Array.from({ length: two.vertexCount }, (_, v) => (v < ball.vertexCount ? 0 : 1));
+        const { vertices } = two.part([], { layers }).mesh;
+        assert.deepEqual(vertices.subarray(0, ball.vertices.length), ball.vertices); // an inner layer does not give way
+        assert.throws(() => torus.part([{}]), { code: 'InvalidArgument' });
+        assert.throws(() => torus.part([moved], { pinned: [1] }), { code: 'InvalidArgument' });
+        assert.throws(() => torus.part([moved], { thickness: -1 }), { code: 'InvalidOptions' });
+    });
     test('is read from the bytes of a file', () => {
         const obj = 'v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv .1e+1 0.5 1e-3\nf 1 2 3 4\nf 1 2 5\n';
         const mesh = echinus.readMesh(new TextEncoder().encode(obj), 'A.OBJ');

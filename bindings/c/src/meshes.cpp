@@ -4,6 +4,7 @@
 
 #include <echinus/intersections.hpp>
 #include <echinus/mesh_io.hpp>
+#include <echinus/surface_collision.hpp>
 
 #include <algorithm>
 #include <memory>
@@ -15,6 +16,7 @@ static_assert(sizeof(Vec3f) == 3 * sizeof(float) && sizeof(Vec3d) == 3 * sizeof(
               sizeof(Triangle) == 3 * sizeof(std::uint32_t) && sizeof(FacePair) == 2 * sizeof(std::uint32_t));
 ECHINUS_REQUIRE_NO_PADDING_AFTER(echinus_mesh_report, reserved);
 ECHINUS_REQUIRE_NO_PADDING_AFTER(echinus_repair_report, seams_filled);
+ECHINUS_REQUIRE_NO_PADDING_AFTER(echinus_part_report, largest_stretch);
 template <>
 inline constexpr std::size_t kFirstSize<echinus_mesh_report> = offsetof(echinus_mesh_report, rounding_step);
 template <>
@@ -125,6 +127,23 @@ echinus_penetration describe(const Penetration& penetration) {
             penetration.depth};
 }
 
+std::vector<TriangleMesh> meshes_at(const echinus_mesh* const* first, std::size_t count, const char* name) {
+    std::vector<TriangleMesh> copies;
+    for (const echinus_mesh* mesh : values_at(first, count, name)) copies.push_back(at(mesh, "a mesh").value);
+    return copies;
+}
+
+echinus_part_report describe(const Parted& parted) {
+    std::size_t model_pairs = 0;
+    for (const std::vector<FacePair>& pairs : parted.model_pairs) model_pairs += pairs.size();
+    return {.size = 0,
+            .own_pairs = parted.own_pairs.size(),
+            .model_pairs = model_pairs,
+            .inside_count = parted.inside.size(),
+            .stretched_share = parted.stretched_share,
+            .largest_stretch = parted.largest_stretch};
+}
+
 std::vector<echinus_checked_meshes> describe(const std::vector<CheckedMeshes>& found) {
     std::vector<echinus_checked_meshes> result;
     for (const CheckedMeshes& pair : found)
@@ -231,6 +250,26 @@ echinus_status echinus_mesh_repair(const echinus_mesh* mesh, const echinus_repai
     });
 }
 
+echinus_status echinus_mesh_part(const echinus_mesh* mesh, const echinus_mesh* const* models,
+                                 size_t model_count, const uint8_t* pinned, const uint8_t* layers,
+                                 double thickness, uint32_t thread_count, echinus_mesh** parted,
+                                 echinus_part_report* report) {
+    if (parted != nullptr) *parted = nullptr;
+    return guarded(__func__, [&] {
+        at(parted, "parted");
+        TriangleMesh surface = mesh_at(mesh);
+        PartOptions options{.thread_count = thread_count};
+        if (thickness != 0) options.thickness = thickness;
+        if (pinned != nullptr) options.pinned.assign(pinned, pinned + surface.vertices.size());
+        if (layers != nullptr) options.layers.assign(layers, layers + surface.vertices.size());
+        Parted result = part(surface, meshes_at(models, model_count, "models"), options);
+        surface.vertices = std::move(result.vertices);
+        auto handle = std::unique_ptr<echinus_mesh>(new echinus_mesh{std::move(surface)});
+        if (report != nullptr) write_struct(report, describe(result), "report");
+        *parted = handle.release();
+    });
+}
+
 echinus_status echinus_mesh_weld(const echinus_mesh* mesh, echinus_mesh** welded) {
     return make(__func__, welded, [&] { return weld(mesh_at(mesh)); });
 }
@@ -280,9 +319,7 @@ echinus_status echinus_mesh_intersections(const echinus_mesh* a, const echinus_m
 echinus_status echinus_check(const echinus_mesh* const* meshes, size_t mesh_count, uint32_t thread_count,
                              echinus_array** found) {
     return make(__func__, found, [&] {
-        std::vector<TriangleMesh> copies;
-        for (const echinus_mesh* mesh : values_at(meshes, mesh_count, "meshes"))
-            copies.push_back(at(mesh, "a mesh").value);
-        return array_of(describe(check(copies, {.thread_count = thread_count})));
+        return array_of(
+            describe(check(meshes_at(meshes, mesh_count, "meshes"), {.thread_count = thread_count})));
     });
 }

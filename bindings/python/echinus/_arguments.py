@@ -102,13 +102,13 @@ def list_of_kind(name: str, values: Any, kind: type[Kind]) -> list[Kind]:
     return [of_kind(f"{name}[{i}]", value, kind) for i, value in enumerate(values)]
 
 
-def path_of(value: Any) -> str:
+def path_of(value: Any, name: str = "a path") -> str:
     """Converts the path of a file or folder."""
     if not isinstance(value, (str, bytes, os.PathLike)):
-        raise TypeError(f"a path must be a str or os.PathLike, not {kind_name(value)}")
+        raise TypeError(f"{name} must be a str or os.PathLike, not {kind_name(value)}")
     path = os.fsdecode(value)
     if "\0" in path:
-        raise ValueError(f"a path must not contain a null byte: {path!r}")
+        raise ValueError(f"{name} must not contain a null byte: {path!r}")
     return path
 
 

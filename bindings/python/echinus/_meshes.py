@@ -15,6 +15,8 @@ from echinus._arguments import flag, number, path_of, threads_of, vector, whole
 
 Path = str | os.PathLike[str]
 
+_MOST_LAYERS = 256
+
 
 @runtime_checkable
 class MeshLike(Protocol):
@@ -111,15 +113,25 @@ def read_mesh(path: Path) -> Mesh:
     return Mesh(*_core.read_mesh(path_of(path)))
 
 
-def write_mesh(path: Path, mesh: MeshLike) -> None:
+def write_mesh(path: Path, mesh: MeshLike, *, original: Path | None = None) -> None:
     """Writes OBJ, PLY, STL or OFF, depending on the file name's extension. The file is written atomically.
+
+    Parameters
+    ----------
+    original
+        The OBJ file from which the mesh was read before its vertices moved: polygons, texture coordinates, groups and
+        materials then stay as they are in it, if ``path`` is an OBJ, too.
 
     Raises
     ------
     Error
-        ``unwritable``, ``wrong_format`` for any other extension, or ``invalid_mesh``.
+        ``unwritable``, ``wrong_format`` for any other extension, or ``invalid_mesh``, also for another number of vertices
+        than in the original.
     """
-    _core.write_mesh(path_of(path), *arrays_of(mesh))
+    if original is None:
+        _core.write_mesh(path_of(path), *arrays_of(mesh))
+    else:
+        _core.write_moved_mesh(path_of(path), *arrays_of(mesh), path_of(original, "original"))
 
 
 @dataclass(frozen=True)
@@ -462,7 +474,9 @@ class Parted:
     Attributes
     ----------
     mesh
-        The surface with its vertices moved, in their order.
+        The surface with its vertices moved, in their order; of several layers all, joined.
+    meshes
+        The layers.
     own_pairs
         The intersecting pairs of its own faces, ``(n, 2)`` of uint32.
     model_pairs
@@ -476,6 +490,7 @@ class Parted:
     """
 
     mesh: Mesh
+    meshes: tuple[Mesh, ...]
     own_pairs: NDArray[np.uint32]
     model_pairs: tuple[NDArray[np.uint32], ...]
     inside: NDArray[np.uint32]
@@ -488,8 +503,23 @@ class Parted:
         return len(self.own_pairs) == 0 and len(self.inside) == 0 and all(len(pairs) == 0 for pairs in self.model_pairs)
 
 
+def _joined(meshes: Sequence[MeshLike]) -> Mesh:
+    arrays = [arrays_of(mesh, f"mesh[{i}]") for i, mesh in enumerate(meshes)]
+    firsts = np.cumsum([0] + [len(vertices) for vertices, _ in arrays[:-1]])
+    return Mesh(
+        np.concatenate([vertices for vertices, _ in arrays]),
+        np.concatenate([faces + np.uint32(first) for (_, faces), first in zip(arrays, firsts)]),
+    )
+
+
+def _divided(joined: Mesh, meshes: Sequence[MeshLike]) -> tuple[Mesh, ...]:
+    """The meshes with the positions of the joined one."""
+    parts = np.split(joined.vertices, np.cumsum([len(as_mesh(mesh).vertices) for mesh in meshes])[:-1])
+    return tuple(Mesh(vertices, as_mesh(mesh).faces) for vertices, mesh in zip(parts, meshes))
+
+
 def part(
-    mesh: MeshLike,
+    mesh: MeshLike | Sequence[MeshLike],
     models: Sequence[MeshLike] = (),
     *,
     thickness: float | None = None,
@@ -504,14 +534,17 @@ def part(
     Parameters
     ----------
     mesh
-        The surface; at most two faces meet at an edge.
+        The surface; at most two faces meet at an edge. Or several, the layers from the inside to the outside: each moves to
+        the outer side of those before it, which is the one that faces away from the closed models, or without any, the one
+        to which the normals of their faces point.
     models
         Open or closed meshes that stay; an open one has no inside. They may intersect themselves and each other.
     thickness
-        Distance above 0 from which contact pushes the surface off the models; by default a tenth of the mean edge length. It is
-        less where the material presses. A surface that does not intersect anything is returned as it is.
+        Distance above 0 from which contact pushes the surface off the models, at most four mean edge lengths; by default a
+        tenth. It is less where the material presses. A surface that does not intersect anything is returned as it is.
     pinned
-        For each vertex, true if it stays where it is; ``None``: no vertex is pinned. One inside a model cannot be parted.
+        For each vertex of all layers, true if it stays where it is; ``None``: no vertex is pinned. One inside a model cannot
+        be parted.
     threads
         0: all cores. The result does not depend on it.
 
@@ -525,13 +558,27 @@ def part(
     pins = [] if pinned is None else list(pinned) if isinstance(pinned, (Sequence, np.ndarray)) else [None]
     if not all(isinstance(pin, (bool, np.bool_)) for pin in pins):
         raise TypeError("pinned must be an array of booleans, one for each vertex")
+    meshes = [mesh] if isinstance(mesh, MeshLike) else mesh
+    if not isinstance(meshes, Sequence) or len(meshes) == 0 or len(meshes) > _MOST_LAYERS:
+        raise TypeError(f"mesh must be a mesh or a list of 1 to {_MOST_LAYERS} meshes")
+    surface = _joined(meshes)
+    layers = np.repeat(np.arange(len(meshes)), [len(as_mesh(layer).vertices) for layer in meshes]) if len(meshes) > 1 else []
     moved, own_pairs, model_pairs, inside, stretched_share, largest_stretch = _core.part(
-        *arrays_of(mesh),
+        *arrays_of(surface),
         [arrays_of(model, f"models[{i}]") for i, model in enumerate(models)],
-        (None if thickness is None else number("thickness", thickness), [int(pin) for pin in pins]),
+        (None if thickness is None else number("thickness", thickness), [int(pin) for pin in pins], [int(n) for n in layers]),
         threads_of(threads),
     )
-    return Parted(Mesh(*moved), own_pairs, model_pairs, inside.astype(np.uint32), stretched_share, largest_stretch)
+    joined = Mesh(*moved)
+    return Parted(
+        joined,
+        _divided(joined, meshes),
+        own_pairs,
+        model_pairs,
+        inside.astype(np.uint32),
+        stretched_share,
+        largest_stretch,
+    )
 
 
 def make_torus(

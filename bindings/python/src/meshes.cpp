@@ -13,6 +13,7 @@
 #include <array>
 #include <filesystem>
 #include <string>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -142,18 +143,20 @@ py::list check_meshes(const std::vector<std::pair<Vertices, Faces>>& given, int 
     return result;
 }
 
-using ThicknessAndPins = std::pair<std::optional<double>, std::vector<std::uint8_t>>;
+/// Thickness, pinned, layers.
+using PartArguments = std::tuple<std::optional<double>, std::vector<std::uint8_t>, std::vector<std::uint8_t>>;
 
 /// (mesh, own pairs, pairs with each model, vertices inside, stretched share, largest stretch)
 py::tuple part_mesh(const Vertices& vertices, const Faces& faces,
-                    const std::vector<std::pair<Vertices, Faces>>& given, const ThicknessAndPins& options,
+                    const std::vector<std::pair<Vertices, Faces>>& given, const PartArguments& options,
                     int threads) {
     TriangleMesh surface = mesh_of(vertices, faces);
     std::vector<TriangleMesh> models;
     for (const auto& [model_vertices, model_faces] : given)
         models.push_back(mesh_of(model_vertices, model_faces));
+    const auto& [thickness, pinned, layers] = options;
     const PartOptions chosen{
-        .thickness = options.first, .pinned = options.second, .thread_count = thread_count(threads)};
+        .thickness = thickness, .pinned = pinned, .layers = layers, .thread_count = thread_count(threads)};
     const Parted parted = unlocked([&] { return part(surface, models, chosen); });
     surface.vertices = parted.vertices;
     py::list model_pairs;
@@ -202,6 +205,11 @@ void bind_meshes(py::module_& module) {
                    const TriangleMesh mesh = mesh_of(vertices, faces);
                    unlocked([&] { write_mesh(path, mesh); });
                });
+    module.def("write_moved_mesh", [](const std::filesystem::path& path, const Vertices& vertices,
+                                      const Faces& faces, const std::filesystem::path& original) {
+        const TriangleMesh mesh = mesh_of(vertices, faces);
+        unlocked([&] { write_moved_mesh(path, mesh, original); });
+    });
     module.def("inspect", inspect_mesh);
     module.def("repair", repair_mesh);
     module.def("weld", [](const Vertices& vertices, const Faces& faces) {

@@ -1,6 +1,6 @@
 import { Handle, requireOwn } from './core.mjs';
 import { refuse, requireCount, requirePoint } from './errors.mjs';
-import { checkedMeshes, meshReport, repairOptions, repairReport, repairs } from './structs.mjs';
+import { checkedMeshes, meshReport, partReport, repairOptions, repairReport, repairs } from './structs.mjs';
 
 const FAULTS = ['borderEdges', 'nonmanifoldEdges', 'misorientedEdges', 'duplicateFaces', 'degenerateFaces'];
 
@@ -96,6 +96,23 @@ export class Mesh extends Handle {
         const found = Array.from({ length: core.call('echinus_array_count', array) }, (_, i) => core.read(checkedMeshes, first + i * checkedMeshes.bytes));
         core.call('echinus_array_destroy', array);
         return found.map(({ aInB, bInA, ...both }) => ({ ...both, aInB: penetrationOf(aInB), bInA: penetrationOf(bInA) }));
+    }
+
+    part(models = [], { thickness = 0, pinned, layers } = {}) {
+        const { core } = this;
+        const addresses = Uint32Array.from(models, (model) => requireOwn(core, model, Mesh));
+        const lists = Object.entries({ pinned, layers }).map(([name, list]) => this.#bytesOf(list, name));
+        return core.withCopies([addresses, ...lists], (list, pins, numbers) =>
+            core.withStruct(partReport, {}, (report) => {
+                const given = (bytes, address) => (bytes.length > 0 ? address : 0);
+                core.do('echinus_mesh_part', this.address, list, addresses.length, given(lists[0], pins), given(lists[1], numbers), thickness, 1, core.scratch, report);
+                return { mesh: new Mesh(core, core.views.words[core.scratch >>> 2]), report: core.read(partReport, report) };
+            }));
+    }
+    #bytesOf(list, name) {
+        if (list === undefined) return new Uint8Array();
+        if (list.length !== this.vertexCount) refuse(`${name} has ${list.length} entries; it needs one for each of the ${this.vertexCount} vertices`);
+        return Uint8Array.from(list);
     }
 
     weld() {

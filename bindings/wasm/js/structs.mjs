@@ -24,6 +24,10 @@ export const repairReport = { bytes: 104, members: {
     verticesWelded: [72, 'BigUint64'], sliversDropped: [80, 'BigUint64'], facesTurned: [88, 'BigUint64'],
     seamsFilled: [96, 'BigUint64'],
 } };
+export const partReport = { bytes: 48, members: {
+    size: [0, 'Uint32'], ownPairs: [8, 'BigUint64'], modelPairs: [16, 'BigUint64'], insideCount: [24, 'BigUint64'],
+    stretchedShare: [32, 'Float64'], largestStretch: [40, 'Float64'],
+} };
 export const penetration = { bytes: 16, members: {
     known: [0, 'Int32'], vertexCount: [4, 'Uint32'], deepestVertex: [8, 'Uint32'], depth: [12, 'Float32'],
 } };

@@ -45,6 +45,12 @@ static_assert(sizeof(echinus_repair_report) == 104 && offsetof(echinus_repair_re
               offsetof(echinus_repair_report, slivers_dropped) == 80 &&
               offsetof(echinus_repair_report, faces_turned) == 88 &&
               offsetof(echinus_repair_report, seams_filled) == 96);
+static_assert(sizeof(echinus_part_report) == 48 && offsetof(echinus_part_report, size) == 0 &&
+              offsetof(echinus_part_report, own_pairs) == 8 &&
+              offsetof(echinus_part_report, model_pairs) == 16 &&
+              offsetof(echinus_part_report, inside_count) == 24 &&
+              offsetof(echinus_part_report, stretched_share) == 32 &&
+              offsetof(echinus_part_report, largest_stretch) == 40);
 static_assert(sizeof(echinus_penetration) == 16 && offsetof(echinus_penetration, known) == 0 &&
               offsetof(echinus_penetration, vertex_count) == 4 &&
               offsetof(echinus_penetration, deepest_vertex) == 8 &&

@@ -284,6 +284,35 @@ ECHINUS_API echinus_status echinus_mesh_repair(const echinus_mesh* mesh,
                                                const echinus_repair_options* options, echinus_mesh** repaired,
                                                echinus_repair_report* report, echinus_array** dropped_faces);
 
+/// The displacements of echinus_mesh_part(), and what still intersects.
+typedef struct echinus_part_report {
+    size_t size;
+    uint64_t own_pairs;     ///< pairs of faces of the surface
+    uint64_t model_pairs;   ///< pairs of a face of the surface and a face of a model, of all models
+    uint64_t inside_count;  ///< vertices inside a closed model
+    double stretched_share; ///< the share of edges whose length changed by more than 5 %
+    double largest_stretch; ///< the largest length of an edge over its length before, minus 1
+} echinus_part_report;
+
+/// Makes a copy of a surface such as a garment that is moved, with little stretch, out of models, out of
+/// itself, and its layers into their order. Whatever could not be parted is counted in the report, and found
+/// by echinus_mesh_intersecting_pairs() and echinus_mesh_self_intersecting_pairs(). It may take up to a
+/// minute for 10 000 vertices on a detailed model.
+/// @param models        [model_count] open or closed, in any frame; an open one has no inside
+/// @param pinned        [vertex_count] 1 for vertices that stay where they are, otherwise 0; or NULL
+/// @param layers        [vertex_count] the layer of each vertex, a larger number farther outside; all
+/// vertices of a face are in the same one; or NULL. The outer side of a layer is the one that faces away from
+/// the closed models, or without any, the one to which the normals of the faces point
+/// @param thickness     distance from which contact pushes the surface off the models, at most four mean edge
+/// lengths; 0: a tenth of the mean edge length
+/// @param thread_count  0: all cores; the result does not depend on it
+/// @param report        out; the caller sets its size; or NULL
+/// @return ECHINUS_INVALID_MESH, also for a model of which no exact map is possible; ECHINUS_INVALID_OPTIONS
+ECHINUS_API echinus_status echinus_mesh_part(const echinus_mesh* mesh, const echinus_mesh* const* models,
+                                             size_t model_count, const uint8_t* pinned, const uint8_t* layers,
+                                             double thickness, uint32_t thread_count, echinus_mesh** parted,
+                                             echinus_part_report* report);
+
 /// Makes a copy in which vertices at equal positions are joined and unused vertices are dropped.
 ECHINUS_API echinus_status echinus_mesh_weld(const echinus_mesh* mesh, echinus_mesh** welded);
 
