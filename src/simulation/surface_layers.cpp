@@ -8,7 +8,6 @@
 
 #include <cstddef>
 #include <limits>
-#include <map>
 #include <numeric>
 #include <span>
 #include <string>
@@ -51,7 +50,7 @@ std::vector<SurfaceLayer> layers_of(const TriangleMesh& surface, const PartOptio
         std::iota(all.begin(), all.end(), 0U);
         return {{surface, all, options.pinned}};
     }
-    std::map<std::uint8_t, SurfaceLayer> layers;
+    std::vector<SurfaceLayer> layers(std::size_t{std::numeric_limits<std::uint8_t>::max()} + 1); // [number]
     std::vector<std::uint32_t> in_layer;
     for (std::uint32_t v = 0; v < surface.vertices.size(); ++v) {
         SurfaceLayer& layer = layers[options.layers[v]];
@@ -62,10 +61,8 @@ std::vector<SurfaceLayer> layers_of(const TriangleMesh& surface, const PartOptio
     }
     for (const auto& [a, b, c] : surface.faces)
         layers[options.layers[a]].mesh.faces.push_back({in_layer[a], in_layer[b], in_layer[c]});
-    std::vector<SurfaceLayer> ordered;
-    for (auto& [number, layer] : layers)
-        if (!layer.mesh.faces.empty()) ordered.push_back(std::move(layer));
-    return ordered;
+    std::erase_if(layers, [](const SurfaceLayer& layer) { return layer.mesh.faces.empty(); });
+    return layers;
 }
 
 void turn_outward(TriangleMesh& layer, const std::vector<Collider>& colliders) {

@@ -168,6 +168,17 @@ TEST_F(RenderCommand, RefusesWhatItCannotRead) {
     expect_failure(1, "cloth.pc2", render({"moment", "run", "-o", "p.png"}));
 }
 
+TEST_F(RenderCommand, DrawsSeveralMeshesAndTheirIntersectingFacesInRed) {
+    write("sheet.obj", "v -2 -2 0.1\nv 2 -2 0.1\nv 2 2 0.1\nv -2 2 0.1\nf 1 2 3\nf 1 3 4\n");
+    expect_success(render({"mesh", "box.obj", "sheet.obj", "-o", "both.png"}));
+    EXPECT_EQ(red_pixel_count(path("both.png")), 0U);
+    expect_success(render({"mesh", "box.obj", "sheet.obj", "--intersections", "-o", "both.png"}));
+    EXPECT_GT(red_pixel_count(path("both.png")), 100U);
+    expect_success(render({"mesh", "box.obj", "--intersections", "-o", "both.png"}));
+    EXPECT_EQ(red_pixel_count(path("both.png")), 0U);
+    expect_failure(1, "none.obj", render({"mesh", "box.obj", "none.obj", "-o", "both.png"}));
+}
+
 TEST_F(RenderCommand, RefusesWhatItCannotWrite) {
     expect_failure(1, "missing/p.png", render({"mesh", "box.obj", "-o", "missing/p.png"}));
     expect_failure(1, "/dev/full", render({"mesh", "box.obj", "-o", "/dev/full"}));

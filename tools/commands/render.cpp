@@ -13,6 +13,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <memory>
 
 using namespace echinus;
@@ -85,19 +86,50 @@ double aspect_of(const RenderOptions& options) {
     return static_cast<double>(options.width) / options.height;
 }
 
-// ---- A mesh ----
+// ---- Meshes ----
 
 struct MeshPicture : PictureArguments {
-    MeshArgument mesh;
+    std::vector<fs::path> meshes;
+    MeshArgument standard_input; ///< its format
     double wire_width_px = 0;
+    bool marks_intersections = false;
 };
 
-void render_mesh(const MeshPicture& arguments) {
-    std::array<RenderedObject, 1> objects;
-    objects[0].mesh = read_mesh(arguments.mesh);
-    objects[0].wire_width_px = arguments.wire_width_px;
+/// The first mesh in grey, and each further one in another colour.
+std::vector<RenderedObject> objects_of(const MeshPicture& arguments) {
+    std::vector<RenderedObject> objects;
+    for (const fs::path& path : arguments.meshes) {
+        const MeshArgument argument{path, arguments.standard_input.format};
+        RenderedObject object;
+        object.mesh = read_mesh(argument);
+        object.wire_width_px = arguments.wire_width_px;
+        if (!objects.empty()) {
+            move_to_frame(objects[0].mesh.origin, object.mesh, argument.name());
+            object.colour = palette::kLayers[(objects.size() - 1) % std::size(palette::kLayers)];
+        }
+        objects.push_back(std::move(object));
+    }
+    return objects;
+}
+
+void mark_intersections(std::vector<RenderedObject>& objects) {
+    for (std::size_t i = 0; i < objects.size(); ++i) {
+        std::vector<std::uint32_t>& marked = objects[i].marked_faces;
+        for (const auto& [a, b] : self_intersecting_pairs(objects[i].mesh))
+            marked.insert(marked.end(), {a, b});
+        for (std::size_t j = 0; j < i; ++j)
+            for (const auto& [a, b] : intersecting_pairs(objects[i].mesh, objects[j].mesh)) {
+                marked.push_back(a);
+                objects[j].marked_faces.push_back(b);
+            }
+    }
+}
+
+void render_meshes(const MeshPicture& arguments) {
+    std::vector<RenderedObject> objects = objects_of(arguments);
+    if (arguments.marks_intersections) mark_intersections(objects);
     ProgressBar bar("drawing");
-    const Image image = naming_mesh(arguments.mesh.name(), [&] {
+    const Image image = naming_mesh(name_of_input(arguments.meshes[0]), [&] {
         return render::render(objects, camera_for(objects, arguments.view, aspect_of(arguments.options)),
                               with_progress(arguments.options, bar));
     });
@@ -106,19 +138,19 @@ void render_mesh(const MeshPicture& arguments) {
 
 void add_mesh_picture(Command program) {
     const auto arguments = std::make_shared<MeshPicture>();
-    Command command = program.add_command("mesh", "A mesh in matte grey");
-    command.add("MESH", &arguments->mesh.path, "Mesh file, or -").required().type_name("");
-    arguments->mesh.add_format_option(command);
+    Command command = program.add_command("mesh", "A mesh in matte grey, and others in colours");
+    command.add("MESH", &arguments->meshes, "Mesh files, or -").required().type_name("...");
+    arguments->standard_input.add_format_option(command);
     arguments->add_options(command, 1000, 750);
     arguments->add_up_option(command);
     command.add("--wire", &arguments->wire_width_px, "Draw the edges as lines of this width in pixels")
         .type_name("WIDTH")
         .show_default();
-    command.footer("Example:\n  echinus render mesh torus.obj --wire 1 -o torus.png");
-    command.action([arguments] {
-        arguments->mesh.require_format();
-        render_mesh(*arguments);
-    });
+    command.add_flag("--intersections", arguments->marks_intersections,
+                     "Draw faces that intersect others in bright red");
+    command.footer("Examples:\n  echinus render mesh torus.obj --wire 1 -o torus.png\n"
+                   "  echinus render mesh body.obj shirt.obj --intersections -o crossing.png");
+    command.action([arguments] { render_meshes(*arguments); });
 }
 
 // ---- A map ----

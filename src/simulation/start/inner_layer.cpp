@@ -8,22 +8,11 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
-#include <map>
 #include <utility>
 
 namespace echinus {
 
 namespace {
-
-/// The faces at an edge.
-struct AtEdge {
-    Vec3d normals;
-    int face_count = 0;
-};
-
-std::pair<std::uint32_t, std::uint32_t> edge_opposite(const Triangle& face, std::size_t corner) {
-    return std::minmax(face[(corner + 1) % 3], face[(corner + 2) % 3]);
-}
 
 double angle_between(const Vec3d& a, const Vec3d& b) {
     return portable_atan2(length(cross(a, b)), dot(a, b));
@@ -50,38 +39,35 @@ Contact away(const Vec3f& point) {
 
 InnerLayer::InnerLayer(TriangleMesh surface)
     : surface_(std::move(surface)), collider_{.map = ExactMap::build(surface_)},
-      edge_normals_(surface_.faces.size()), is_border_edge_(surface_.faces.size()),
-      vertex_normals_(surface_.vertices.size()), is_border_vertex_(surface_.vertices.size()) {
+      elements_(surface_.vertices.size(), surface_.faces, {}), face_normals_(surface_.faces.size()),
+      edge_normals_(elements_.edges.size()), vertex_normals_(surface_.vertices.size()),
+      is_border_edge_(elements_.edges.size()), is_border_vertex_(surface_.vertices.size()) {
     find_normals();
 }
 
 void InnerLayer::find_normals() {
-    std::map<std::pair<std::uint32_t, std::uint32_t>, AtEdge> edges;
-    for (const Triangle& face : surface_.faces) {
-        const std::array<Vec3d, 3> p = corners(face);
-        const Vec3d normal = unit_or_zero(cross(p[1] - p[0], p[2] - p[0]));
-        face_normals_.push_back(normal);
+    std::vector<std::uint32_t> face_counts(elements_.edges.size());
+    for (std::size_t f = 0; f < surface_.faces.size(); ++f) {
+        const std::array<Vec3d, 3> p = corners(f);
+        face_normals_[f] = unit_or_zero(cross(p[1] - p[0], p[2] - p[0]));
         for (std::size_t k = 0; k < 3; ++k) {
             const Vec3d to_next = p[(k + 1) % 3] - p[k], to_last = p[(k + 2) % 3] - p[k];
-            vertex_normals_[face[k]] += normal * angle_between(to_next, to_last);
-            AtEdge& edge = edges[edge_opposite(face, k)];
-            edge.normals += normal;
-            ++edge.face_count;
+            vertex_normals_[surface_.faces[f][k]] += face_normals_[f] * angle_between(to_next, to_last);
+            const std::uint32_t edge = elements_.all[f].edges[k];
+            edge_normals_[edge] += face_normals_[f];
+            ++face_counts[edge];
         }
     }
-    for (std::size_t f = 0; f < surface_.faces.size(); ++f)
-        for (std::size_t k = 0; k < 3; ++k) {
-            const std::pair ends = edge_opposite(surface_.faces[f], k);
-            const AtEdge& edge = edges[ends];
-            edge_normals_[f][k] = edge.normals;
-            is_border_edge_[f][k] = edge.face_count == 1;
-            if (edge.face_count == 1) is_border_vertex_[ends.first] = is_border_vertex_[ends.second] = true;
-        }
+    for (std::size_t edge = 0; edge < face_counts.size(); ++edge) {
+        if (face_counts[edge] > 1) continue;
+        is_border_edge_[edge] = true;
+        for (const std::uint32_t end : elements_.edges[edge]) is_border_vertex_[end] = true;
+    }
 }
 
-std::array<Vec3d, 3> InnerLayer::corners(const Triangle& face) const {
-    return {Vec3d(surface_.vertices[face[0]]), Vec3d(surface_.vertices[face[1]]),
-            Vec3d(surface_.vertices[face[2]])};
+std::array<Vec3d, 3> InnerLayer::corners(std::size_t face) const {
+    const auto& [a, b, c] = surface_.faces[face];
+    return {Vec3d(surface_.vertices[a]), Vec3d(surface_.vertices[b]), Vec3d(surface_.vertices[c])};
 }
 
 Contact InnerLayer::contact_of(const Vec3f& point, const Contact& nearest) const {
@@ -100,12 +86,13 @@ Contact InnerLayer::contact_of(const Vec3f& point, const Contact& nearest) const
 
 std::optional<Vec3d> InnerLayer::normal_at(const Contact& nearest) const {
     if (nearest.feature == Feature::Face) return face_normals_[nearest.face];
-    const Triangle& face = surface_.faces[nearest.face];
-    const auto [least, most] = least_and_most(corners(face), Vec3d(nearest.point));
-    if (nearest.feature == Feature::Edge)
-        return is_border_edge_[nearest.face][least] ? std::nullopt
-                                                    : std::optional(edge_normals_[nearest.face][least]);
-    return is_border_vertex_[face[most]] ? std::nullopt : std::optional(vertex_normals_[face[most]]);
+    const auto [least, most] = least_and_most(corners(nearest.face), Vec3d(nearest.point));
+    if (nearest.feature == Feature::Edge) {
+        const std::uint32_t opposite = elements_.all[nearest.face].edges[(least + 1) % 3];
+        return is_border_edge_[opposite] ? std::nullopt : std::optional(edge_normals_[opposite]);
+    }
+    const std::uint32_t vertex = surface_.faces[nearest.face][most];
+    return is_border_vertex_[vertex] ? std::nullopt : std::optional(vertex_normals_[vertex]);
 }
 
 } // namespace echinus

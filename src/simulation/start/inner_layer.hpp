@@ -1,5 +1,7 @@
 #pragma once
 
+#include "simulation/surfaces/elements.hpp"
+
 #include <echinus/collider.hpp>
 #include <echinus/contact.hpp>
 #include <echinus/mesh.hpp>
@@ -27,17 +29,15 @@ class InnerLayer {
 
   private:
     void find_normals();
-    std::array<Vec3d, 3> corners(const Triangle& face) const;
+    std::array<Vec3d, 3> corners(std::size_t face) const;
     /// The normal at a feature of a face, not of unit length; nothing on the border.
     std::optional<Vec3d> normal_at(const Contact& nearest) const;
 
     TriangleMesh surface_;
     Collider collider_;
-    std::vector<Vec3d> face_normals_;                 ///< [face]
-    std::vector<std::array<Vec3d, 3>> edge_normals_;  ///< [face] of the edges opposite to its corners
-    std::vector<std::array<bool, 3>> is_border_edge_; ///< [face] likewise
-    std::vector<Vec3d> vertex_normals_;               ///< [vertex]
-    std::vector<bool> is_border_vertex_;              ///< [vertex]
+    Elements elements_;
+    std::vector<Vec3d> face_normals_, edge_normals_, vertex_normals_; ///< [face], [edge], [vertex]
+    std::vector<bool> is_border_edge_, is_border_vertex_;
 };
 
 } // namespace echinus

@@ -7,7 +7,7 @@ import { cpSync, readFileSync, readdirSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { here, inProject, installPacked } from './packed.mjs';
 
-const MOST_BYTES = 600_000; // a hundredth above what it has been
+const MOST_BYTES = 612_000; // a hundredth above what it has been
 
 let user, packed, inUser;
 before(() => ({ user, packed, run: inUser } = installPacked('user')));
