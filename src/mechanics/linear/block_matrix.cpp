@@ -80,26 +80,37 @@ void BlockMatrix::set_contacts() {
     contacts.columns.clear();
     contacts.values.clear();
     order_contacts_by_rows();
+    row_slots_.resize(row_count(), kNone);
     for (std::size_t row = 0; row < row_count(); ++row) {
-        const auto begin = contact_order_.begin() + contacts.first[row],
-                   end = contact_order_.begin() + contacts.first[row + 1];
-        std::sort(begin, end, [&](std::uint32_t a, std::uint32_t b) {
-            const std::uint32_t of_a = added_contacts_[a].at[1], of_b = added_contacts_[b].at[1];
-            return of_a != of_b ? of_a < of_b : a < b;
-        });
-        const std::size_t first = contacts.columns.size();
-        for (auto number = begin; number != end; ++number) {
-            const AddedContact& entry = added_contacts_[*number];
-            if (contacts.columns.size() > first && contacts.columns.back() == entry.at[1]) {
-                contacts.values.back() += entry.value;
-            } else {
-                contacts.columns.push_back(entry.at[1]);
-                contacts.values.push_back(entry.value);
-            }
+        sum_row(std::span(contact_order_)
+                    .subspan(contacts.first[row], contacts.first[row + 1] - contacts.first[row]));
+        contacts.first[row] = static_cast<std::uint32_t>(contacts.columns.size());
+        for (const std::uint32_t column : row_columns_) {
+            contacts.columns.push_back(column);
+            contacts.values.push_back(row_values_[row_slots_[column]]);
+            row_slots_[column] = kNone;
         }
-        contacts.first[row] = static_cast<std::uint32_t>(first);
     }
     contacts.first[row_count()] = static_cast<std::uint32_t>(contacts.columns.size());
+}
+
+/// Sums the added entries of a row by columns. Close layers add many for the same column, so only the columns
+/// are sorted and not the entries.
+void BlockMatrix::sum_row(std::span<const std::uint32_t> numbers) {
+    row_columns_.clear();
+    row_values_.clear();
+    for (const std::uint32_t number : numbers) {
+        const AddedContact& entry = added_contacts_[number];
+        std::uint32_t& slot = row_slots_[entry.at[1]];
+        if (slot != kNone) {
+            row_values_[slot] += entry.value;
+            continue;
+        }
+        slot = static_cast<std::uint32_t>(row_columns_.size());
+        row_columns_.push_back(entry.at[1]);
+        row_values_.push_back(entry.value);
+    }
+    std::sort(row_columns_.begin(), row_columns_.end());
 }
 
 /// Sets `contacts.first` to the position at which the added entries of each row begin in their order.

@@ -89,9 +89,13 @@ class BlockMatrix {
         Block value;
     };
     void order_contacts_by_rows();
+    void sum_row(std::span<const std::uint32_t> numbers);
 
     std::vector<AddedContact> added_contacts_;
     std::vector<std::uint32_t> contact_order_;
+    std::vector<std::uint32_t> row_columns_; ///< of the row that is summed
+    std::vector<Block> row_values_;          ///< [slot] likewise
+    std::vector<std::uint32_t> row_slots_;   ///< [column] its slot in the row that is summed, or kNone
 };
 
 /// The number of rows that one thread takes at once in a loop over rows. It is fixed, so that the result does
