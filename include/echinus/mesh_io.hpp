@@ -64,12 +64,14 @@ MeshAndEdges read_mesh_and_edges(const std::filesystem::path& path);
 /// @throws Error Unwritable, WrongFormat for any other extension, or InvalidMesh as inspect() does
 void write_mesh(const std::filesystem::path& path, const TriangleMesh& mesh);
 
-/// Writes a mesh like the file from which read_mesh() read it before its vertices moved: in an OBJ that is
-/// written as an OBJ, polygons, texture coordinates, normals, groups, materials and comments stay as they
-/// are. Other files are written by write_mesh().
+/// Writes a mesh like the OBJ file from which read_mesh() read it before its vertices moved: polygons,
+/// texture coordinates, normals, groups, materials and comments stay as they are. Another mesh is written by
+/// write_mesh(): if either file is no OBJ, or if the new file would be read as other faces, as when polygons
+/// of more than four corners are divided differently in their new shape.
+/// @return whether all else stayed as it is
 /// @throws Error as write_mesh() and read_mesh() do; InvalidMesh also for another number of vertices than in
 /// the original
-void write_moved_mesh(const std::filesystem::path& path, const TriangleMesh& mesh,
+bool write_moved_mesh(const std::filesystem::path& path, const TriangleMesh& mesh,
                       const std::filesystem::path& original);
 
 /// Writes a mesh and its edges, as lines of an OBJ. Other formats are allowed only without edges.

@@ -134,8 +134,9 @@ struct Parted {
     std::vector<std::vector<FacePair>> model_pairs = {};
     /// The vertices that are inside a closed model, ascending. An open model has no inside.
     std::vector<std::uint32_t> inside = {};
-    double stretched_share = 0; ///< the share of edges whose length changed by more than 5 %
-    double largest_stretch = 0; ///< the largest length of an edge over its length before, minus 1
+    double stretched_share = 0;      ///< the share of edges whose length changed by more than 5 %
+    double largest_displacement = 0; ///< of a vertex, in units
+    double largest_stretch = 0;      ///< the largest length of an edge over its length before, minus 1
 
     /// Whether nothing intersects and no vertex is inside.
     bool is_apart() const;
@@ -157,7 +158,8 @@ struct Parted {
 /// @param models  open or closed meshes; those in other frames are moved to that of the surface, where their
 /// coordinates are rounded to float
 /// @throws Error InvalidMesh as make_cloth() does for the surface and ExactMap::build() does for a model,
-/// whose message begins with its index; InvalidOptions for options out of range
+/// whose message begins with its index, and for layers whose neighbouring faces do not agree; InvalidOptions
+/// for options out of range
 Parted part(const TriangleMesh& surface, std::span<const TriangleMesh> models,
             const PartOptions& options = {});
 

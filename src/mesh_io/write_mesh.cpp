@@ -309,14 +309,21 @@ void write_mesh(const std::filesystem::path& path, const TriangleMesh& mesh) {
     write_file(path, encode(mesh));
 }
 
-void write_moved_mesh(const std::filesystem::path& path, const TriangleMesh& mesh,
+bool write_moved_mesh(const std::filesystem::path& path, const TriangleMesh& mesh,
                       const std::filesystem::path& original) {
-    if (encoder_for(path) != encode_obj || lower_case_ending(original) != ".obj")
-        return write_mesh(path, mesh);
-    require_valid(mesh);
-    const std::vector<std::byte> bytes = read_file(original);
-    const MeshSource source{original.string(), {reinterpret_cast<const char*>(bytes.data()), bytes.size()}};
-    write_file(path, encode_moved_obj(source, read_mesh(source), mesh));
+    if (encoder_for(path) == encode_obj && lower_case_ending(original) == ".obj") {
+        require_valid(mesh);
+        const std::vector<std::byte> bytes = read_file(original);
+        const MeshSource source{original.string(),
+                                {reinterpret_cast<const char*>(bytes.data()), bytes.size()}};
+        const std::string moved = encode_moved_obj(source, read_mesh(source), mesh);
+        if (read_mesh(MeshSource{original.string(), moved}).faces == mesh.faces) {
+            write_file(path, moved);
+            return true;
+        }
+    }
+    write_mesh(path, mesh);
+    return false;
 }
 
 void write_mesh_and_edges(const std::filesystem::path& path, const MeshAndEdges& drawn) {

@@ -11,6 +11,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
+#include <span>
 #include <string>
 #include <utility>
 
@@ -102,7 +104,9 @@ bool untangle_layers(const TriangleMesh& surface, const std::vector<Collider>& c
         };
         Deformable deformable = deformable_of(layer.mesh);
         pin(deformable, layer.pinned);
-        is_apart = untangle(deformable, colliders, simulation, inner, progress) && is_apart;
+        std::optional<std::span<const InnerLayer>> inside;
+        if (!options.layers.empty()) inside = inner;
+        is_apart = untangle(deformable, colliders, simulation, inside, progress) && is_apart;
         for (std::size_t v = 0; v < layer.vertices.size(); ++v)
             positions[layer.vertices[v]] = deformable.positions[v];
         layer.mesh.vertices = deformable.positions;
@@ -141,7 +145,10 @@ void find_remaining(const TriangleMesh& surface, std::span<const TriangleMesh> m
         if (in_any[v] != 0) parted.inside.push_back(v);
 }
 
-void measure_stretch(const Elements& elements, std::span<const Vec3f> before, Parted& parted) {
+void measure_changes(const Elements& elements, std::span<const Vec3f> before, Parted& parted) {
+    for (std::size_t v = 0; v < before.size(); ++v)
+        parted.largest_displacement =
+            std::max(parted.largest_displacement, double{length(parted.vertices[v] - before[v])});
     std::size_t stretched_count = 0;
     for (const auto& [a, b] : elements.edges) {
         const double length_before = double{length(before[a] - before[b])};
@@ -188,7 +195,7 @@ Parted part(const TriangleMesh& surface, std::span<const TriangleMesh> given_mod
     if (options.progress) options.progress(1);
     parted = Parted{.vertices = deformable.positions};
     find_remaining(surface, models, colliders, options.thread_count, parted);
-    measure_stretch(elements, surface.vertices, parted);
+    measure_changes(elements, surface.vertices, parted);
     return parted;
 }
 

@@ -1,5 +1,6 @@
 #include "simulation/surface_layers.hpp"
 
+#include "geometry/union_find.hpp"
 #include "simulation/start/validation.hpp"
 #include "simulation/surfaces/model_mesh.hpp"
 
@@ -25,31 +26,13 @@ void require_entries(std::span<const std::uint8_t> option, const std::string& na
                        " vertices, or none");
 }
 
-} // namespace
-
-void require_layers(const TriangleMesh& surface, const PartOptions& options) {
-    require_entries(options.pinned, "pinned", surface);
-    const std::span<const std::uint8_t> layers = options.layers;
-    require_entries(layers, "layers", surface);
-    if (layers.empty()) return;
-    for (std::size_t f = 0; f < surface.faces.size(); ++f) {
-        const auto& [a, b, c] = surface.faces[f];
-        require_option(layers[a] == layers[b] && layers[a] == layers[c],
-                       "the vertices of face " + std::to_string(f) +
-                           " are in different layers; a face must be in one");
-    }
+std::vector<SurfaceLayer> whole(const TriangleMesh& surface, const PartOptions& options) {
+    std::vector<std::uint32_t> all(surface.vertices.size());
+    std::iota(all.begin(), all.end(), 0U);
+    return {{surface, all, options.pinned}};
 }
 
-bool has_inside(const Collider& collider) {
-    return map_of_surface(collider)->view().border.empty(); // an open surface has none
-}
-
-std::vector<SurfaceLayer> layers_of(const TriangleMesh& surface, const PartOptions& options) {
-    if (options.layers.empty()) {
-        std::vector<std::uint32_t> all(surface.vertices.size());
-        std::iota(all.begin(), all.end(), 0U);
-        return {{surface, all, options.pinned}};
-    }
+std::vector<SurfaceLayer> divided(const TriangleMesh& surface, const PartOptions& options) {
     std::vector<SurfaceLayer> layers(std::size_t{std::numeric_limits<std::uint8_t>::max()} + 1); // [number]
     std::vector<std::uint32_t> in_layer;
     for (std::uint32_t v = 0; v < surface.vertices.size(); ++v) {
@@ -65,19 +48,53 @@ std::vector<SurfaceLayer> layers_of(const TriangleMesh& surface, const PartOptio
     return layers;
 }
 
+} // namespace
+
+void require_layers(const TriangleMesh& surface, const PartOptions& options) {
+    require_entries(options.pinned, "pinned", surface);
+    const std::span<const std::uint8_t> layers = options.layers;
+    require_entries(layers, "layers", surface);
+    if (layers.empty()) return;
+    for (std::size_t f = 0; f < surface.faces.size(); ++f) {
+        const auto& [a, b, c] = surface.faces[f];
+        require_option(layers[a] == layers[b] && layers[a] == layers[c],
+                       "the vertices of face " + std::to_string(f) +
+                           " are in different layers; a face must be in one");
+    }
+    if (const Fault& fault = inspect(surface).misoriented_edges; fault.count > 0)
+        throw Error(ErrorCode::InvalidMesh,
+                    std::to_string(fault.count) +
+                        " edges have faces that face opposite sides (first at face " +
+                        std::to_string(fault.first_faces[0]) +
+                        "), so that a layer has no outer side; turn faces such that neighbours agree");
+}
+
+bool has_inside(const Collider& collider) {
+    return map_of_surface(collider)->view().border.empty(); // an open surface has none
+}
+
+std::vector<SurfaceLayer> layers_of(const TriangleMesh& surface, const PartOptions& options) {
+    return options.layers.empty() ? whole(surface, options) : divided(surface, options);
+}
+
 void turn_outward(TriangleMesh& layer, const std::vector<Collider>& colliders) {
-    double agreement = 0;
+    UnionFind pieces(layer.vertices.size());
+    for (const auto& [a, b, c] : layer.faces) {
+        pieces.join(a, b);
+        pieces.join(a, c);
+    }
+    std::vector<double> agreement(layer.vertices.size()); // [root]
     for (const Collider& collider : colliders) {
         if (!has_inside(collider)) continue;
         for (const auto& [a, b, c] : layer.faces) {
             const Vec3f &p = layer.vertices[a], &q = layer.vertices[b], &r = layer.vertices[c];
             const Vec3f outward =
                 contact(collider, (p + q + r) * (1.0F / 3), std::numeric_limits<float>::infinity()).normal;
-            agreement += double{dot(cross(q - p, r - p), outward)};
+            agreement[pieces.find(a)] += double{dot(cross(q - p, r - p), outward)};
         }
     }
-    if (agreement < 0)
-        for (Triangle& face : layer.faces) std::swap(face[1], face[2]);
+    for (Triangle& face : layer.faces)
+        if (agreement[pieces.find(face[0])] < 0) std::swap(face[1], face[2]);
 }
 
 } // namespace echinus

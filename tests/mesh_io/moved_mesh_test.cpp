@@ -61,6 +61,19 @@ TEST_F(MovedMesh, IsWrittenLikeAnyMeshInOtherFormats) {
     EXPECT_EQ(content_of(path("b.obj")), "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
 }
 
+TEST_F(MovedMesh, IsWrittenAsTrianglesWhereItsPolygonsWouldBeDividedInAnotherWay) {
+    const std::filesystem::path original =
+        write("a.obj", "v 0 0 0\nv 2 -1 0\nv 4 0 0\nv 3 3 0\nv 1 3 0\nvt 0 0\nf 1/1 2/1 3/1 4/1 5/1\n");
+    TriangleMesh mesh = read_mesh(original);
+    EXPECT_TRUE(write_moved_mesh(path("b.obj"), mesh, original));
+    mesh.vertices[1] = {2, 2.5F, 0}; // where the polygon is concave
+    mesh.vertices[0] = {0, 0, 1};
+    EXPECT_FALSE(write_moved_mesh(path("b.obj"), mesh, original));
+    EXPECT_EQ(read_mesh(path("b.obj")).faces, mesh.faces);
+    EXPECT_FALSE(write_moved_mesh(path("c.obj"), {{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 2, 1}}},
+                                  write("three.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")));
+}
+
 TEST_F(MovedMesh, RefusesAnotherMeshThanThatOfTheFile) {
     const std::filesystem::path original = write("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
     const TriangleMesh other{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {{0, 1, 2}, {1, 2, 3}}};

@@ -171,6 +171,30 @@ TEST(Part, FindsTheOuterSideOfLayersByTheBodyAndNotByTheirFaces) {
         ASSERT_TRUE(sweep(moved_inner, {}, parted.vertices[v]).found()) << v;
 }
 
+TEST(Part, BringsTrousersIntoOrderOnTwoLegsThatAreNearEachOther) {
+    const auto leg = [](std::size_t number) { // an ellipsoid
+        TriangleMesh mesh = make_sphere(1, 24, 16);
+        for (Vec3f& v : mesh.vertices)
+            v = {0.5F * v.x + (number == 0 ? -0.56F : 0.56F), 0.5F * v.y, 1.5F * v.z};
+        return mesh;
+    };
+    const std::vector<TriangleMesh> legs{leg(0), leg(1)};
+    const auto trousers = [](float phase) {
+        const TriangleMesh tube = make_tube(28, 14, 1.8F, [=](float angle, float z) {
+            return 0.52F * std::sqrt(1 - z * z / 2.25F) + 0.03F * std::sin(5 * angle + 9 * z + phase);
+        });
+        return joined({translated(tube, {-0.56F, 0, 0}), translated(tube, {0.56F, 0, 0})});
+    };
+    const TriangleMesh both = joined({trousers(0), trousers(2)});
+    PartOptions options;
+    options.layers.assign(both.vertices.size() / 2, 0);
+    options.layers.resize(both.vertices.size(), 1);
+    const Parted parted = part(both, legs, options);
+    expect_apart(parted, both, legs);
+    EXPECT_LT(parted.largest_displacement, 0.2) << "no leg is thrown off";
+    EXPECT_LT(parted.largest_stretch, 0.1);
+}
+
 TEST(Part, MovesASleeveOutOfTheChestWhereItWentIn) {
     const auto ellipsoid = [](float radius) {
         TriangleMesh mesh = make_sphere(1, 32, 24);
@@ -259,6 +283,10 @@ TEST(Part, NamesTheModelOrTheOptionAtFault) {
     mixed.layers[24] = 1;
     expect_error(ErrorCode::InvalidOptions, "face 30 are in different layers",
                  [&] { part(sheet, {}, mixed); });
+    TriangleMesh turned = sheet;
+    std::swap(turned.faces[7][0], turned.faces[7][1]);
+    expect_error(ErrorCode::InvalidMesh, "3 edges have faces that face opposite sides (first at face ",
+                 [&] { part(turned, {}, {.layers = std::vector<std::uint8_t>(25)}); });
     TriangleMesh hostile = sheet;
     hostile.faces[3][1] = 400;
     expect_error(ErrorCode::InvalidMesh, "", [&] { part(hostile, {}, mixed); });

@@ -8,6 +8,7 @@
 
 #include <echinus/intersections.hpp>
 #include <echinus/mesh_io.hpp>
+#include <echinus/simulation.hpp>
 #include <echinus/surface_collision.hpp>
 
 #include <fmt/format.h>
@@ -50,6 +51,8 @@ class JoinedMeshes {
             parts_.push_back(read_mesh(arguments.mesh(i)));
             names_.push_back(arguments.mesh(i).name());
             move_to_frame(parts_[0].origin, parts_[i], names_[i]);
+            naming_mesh(names_[i],
+                        [&] { return make_cloth(parts_[i], {}); }); // errors with the file's own numbers
             add(parts_[i]);
         }
     }
@@ -116,6 +119,7 @@ Json json_of(const PartArguments& arguments, const Counts& before, const Parted&
             {"own_pairs", parted.own_pairs.size()},
             {"models", models},
             {"vertices_inside", parted.inside.size()},
+            {"largest_displacement", parted.largest_displacement},
             {"stretched_share", parted.stretched_share},
             {"largest_stretch", parted.largest_stretch}};
 }
@@ -130,6 +134,7 @@ std::string text_of(const PartArguments& arguments, const JoinedMeshes& meshes, 
         table.add("pairs with " + name_of_input(arguments.models[i]),
                   change(before.model_pairs[i], parted.model_pairs[i].size()));
     table.add("vertices inside a model", fmt::format("now {}", parted.inside.size()));
+    table.add("largest displacement", fmt::format("{:.3g}", parted.largest_displacement));
     table.add("edges", fmt::format("{:.2g} % changed by more than 5 %; the longest is stretched by {:.2g} %",
                                    100 * parted.stretched_share, 100 * parted.largest_stretch));
     return table.text();
@@ -171,6 +176,8 @@ void require_arguments(const PartArguments& arguments) {
     require_one_result(arguments.target, arguments.json);
     if (arguments.meshes.size() > kMostLayers)
         throw WrongUse("MESH", fmt::format("there are more than {} layers", kMostLayers));
+    if (arguments.meshes.size() == 1 && !is_standard(arguments.target))
+        require_ending(arguments.target, {".obj", ".ply", ".stl", ".off"});
     if (arguments.meshes.size() > 1) {
         require_names_that_differ(arguments.meshes);
         if (is_standard(arguments.target)) throw WrongUse("--output", "several meshes need a folder");
@@ -192,25 +199,27 @@ TriangleMesh read_model(const MeshArgument& argument, const Vec3d& origin) {
 }
 
 void write_results(const PartArguments& arguments, const JoinedMeshes& meshes,
-                   std::span<const Vec3f> vertices) {
-    const auto write = [&](std::size_t i, const fs::path& target) {
+                   std::span<const Vec3f> vertices, std::optional<OutputFolder>& folder) {
+    for (std::size_t i = 0; i < arguments.meshes.size(); ++i) {
         const TriangleMesh mesh = meshes.moved(i, vertices);
+        const fs::path& original = arguments.meshes[i];
+        const fs::path target = folder ? folder->path_of(original.filename().string()) : arguments.target;
         if (target == kStandardStream)
             print(encode_obj(mesh));
-        else if (arguments.meshes[i] == kStandardStream)
+        else if (original == kStandardStream)
             write_mesh(target, mesh);
-        else
-            write_moved_mesh(target, mesh, arguments.meshes[i]);
-    };
-    if (arguments.meshes.size() == 1) return write(0, arguments.target);
-    OutputFolder folder(arguments.target);
-    for (std::size_t i = 0; i < arguments.meshes.size(); ++i)
-        write(i, folder.path_of(arguments.meshes[i].filename().string()));
-    folder.commit();
+        else if (!write_moved_mesh(target, mesh, original))
+            warn(arguments.mesh(i).name() +
+                 " has polygons whose division into triangles depends on their shape, so "
+                 "that triangles were written, without texture coordinates and groups");
+    }
+    if (folder) folder->commit();
 }
 
 void run(const PartArguments& arguments) {
     require_arguments(arguments);
+    std::optional<OutputFolder> folder; // before the work, which takes long
+    if (arguments.meshes.size() > 1) folder.emplace(arguments.target);
     const JoinedMeshes meshes(arguments);
     std::vector<TriangleMesh> models;
     for (std::size_t i = 0; i < arguments.models.size(); ++i)
@@ -232,7 +241,7 @@ void run(const PartArguments& arguments) {
             throw Error(ErrorCode::InvalidMesh, sentence + "; --best writes the result nevertheless");
         warn(sentence + "; echinus check --pairs shows where");
     }
-    write_results(arguments, meshes, parted.vertices);
+    write_results(arguments, meshes, parted.vertices, folder);
     if (arguments.json)
         print(json_of(arguments, before, parted).indented());
     else if (arguments.target != kStandardStream)

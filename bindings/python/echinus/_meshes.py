@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import warnings
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any, Protocol, runtime_checkable
@@ -120,7 +121,9 @@ def write_mesh(path: Path, mesh: MeshLike, *, original: Path | None = None) -> N
     ----------
     original
         The OBJ file from which the mesh was read before its vertices moved: polygons, texture coordinates, groups and
-        materials then stay as they are in it, if ``path`` is an OBJ, too.
+        materials then stay as they are in it. If either file is no OBJ, or if the new file would be read as other faces, as
+        when polygons of more than four corners are divided differently in their new shape, only triangles are written, and
+        a :class:`RuntimeWarning` says so.
 
     Raises
     ------
@@ -130,8 +133,8 @@ def write_mesh(path: Path, mesh: MeshLike, *, original: Path | None = None) -> N
     """
     if original is None:
         _core.write_mesh(path_of(path), *arrays_of(mesh))
-    else:
-        _core.write_moved_mesh(path_of(path), *arrays_of(mesh), path_of(original, "original"))
+    elif not _core.write_moved_mesh(path_of(path), *arrays_of(mesh), path_of(original, "original")):
+        warnings.warn(f"{path}: triangles were written, without the other statements of {original}", RuntimeWarning, stacklevel=2)
 
 
 @dataclass(frozen=True)
@@ -483,6 +486,8 @@ class Parted:
         For each model the pairs of a face of the surface and a face of the model.
     inside
         The vertices that are inside a closed model, ascending.
+    largest_displacement
+        That of a vertex.
     stretched_share
         The share of edges whose length changed by more than 5 %.
     largest_stretch
@@ -494,6 +499,7 @@ class Parted:
     own_pairs: NDArray[np.uint32]
     model_pairs: tuple[NDArray[np.uint32], ...]
     inside: NDArray[np.uint32]
+    largest_displacement: float
     stretched_share: float
     largest_stretch: float
 
@@ -558,12 +564,12 @@ def part(
     pins = [] if pinned is None else list(pinned) if isinstance(pinned, (Sequence, np.ndarray)) else [None]
     if not all(isinstance(pin, (bool, np.bool_)) for pin in pins):
         raise TypeError("pinned must be an array of booleans, one for each vertex")
-    meshes = [mesh] if isinstance(mesh, MeshLike) else mesh
+    meshes: Sequence[MeshLike] = [mesh] if isinstance(mesh, MeshLike) else mesh
     if not isinstance(meshes, Sequence) or len(meshes) == 0 or len(meshes) > _MOST_LAYERS:
         raise TypeError(f"mesh must be a mesh or a list of 1 to {_MOST_LAYERS} meshes")
     surface = _joined(meshes)
     layers = np.repeat(np.arange(len(meshes)), [len(as_mesh(layer).vertices) for layer in meshes]) if len(meshes) > 1 else []
-    moved, own_pairs, model_pairs, inside, stretched_share, largest_stretch = _core.part(
+    moved, own_pairs, model_pairs, inside, displacement, stretched_share, largest_stretch = _core.part(
         *arrays_of(surface),
         [arrays_of(model, f"models[{i}]") for i, model in enumerate(models)],
         (None if thickness is None else number("thickness", thickness), [int(pin) for pin in pins], [int(n) for n in layers]),
@@ -576,6 +582,7 @@ def part(
         own_pairs,
         model_pairs,
         inside.astype(np.uint32),
+        displacement,
         stretched_share,
         largest_stretch,
     )

@@ -146,7 +146,8 @@ py::list check_meshes(const std::vector<std::pair<Vertices, Faces>>& given, int 
 /// Thickness, pinned, layers.
 using PartArguments = std::tuple<std::optional<double>, std::vector<std::uint8_t>, std::vector<std::uint8_t>>;
 
-/// (mesh, own pairs, pairs with each model, vertices inside, stretched share, largest stretch)
+/// (mesh, own pairs, pairs with each model, vertices inside, largest displacement, stretched share, largest
+/// stretch)
 py::tuple part_mesh(const Vertices& vertices, const Faces& faces,
                     const std::vector<std::pair<Vertices, Faces>>& given, const PartArguments& options,
                     int threads) {
@@ -162,7 +163,8 @@ py::tuple part_mesh(const Vertices& vertices, const Faces& faces,
     py::list model_pairs;
     for (const std::vector<FacePair>& pairs : parted.model_pairs) model_pairs.append(pair_array(pairs));
     return py::make_tuple(arrays_of(std::move(surface)), pair_array(parted.own_pairs), py::tuple(model_pairs),
-                          py::array(py::cast(parted.inside)), parted.stretched_share, parted.largest_stretch);
+                          py::array(py::cast(parted.inside)), parted.largest_displacement,
+                          parted.stretched_share, parted.largest_stretch);
 }
 
 } // namespace
@@ -208,7 +210,7 @@ void bind_meshes(py::module_& module) {
     module.def("write_moved_mesh", [](const std::filesystem::path& path, const Vertices& vertices,
                                       const Faces& faces, const std::filesystem::path& original) {
         const TriangleMesh mesh = mesh_of(vertices, faces);
-        unlocked([&] { write_moved_mesh(path, mesh, original); });
+        return unlocked([&] { return write_moved_mesh(path, mesh, original); });
     });
     module.def("inspect", inspect_mesh);
     module.def("repair", repair_mesh);

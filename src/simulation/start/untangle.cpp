@@ -15,6 +15,7 @@
 #include <functional>
 #include <limits>
 #include <numeric>
+#include <optional>
 #include <span>
 #include <utility>
 
@@ -160,19 +161,30 @@ class Attempt {
 } // namespace
 
 bool untangle(Deformable& deformable, const std::vector<Collider>& colliders,
-              const SimulationOptions& options, std::span<const InnerLayer> inner_layers,
+              const SimulationOptions& options, std::optional<std::span<const InnerLayer>> inner_layers,
               const std::function<void(double share)>& progress) {
+    std::vector<ExitSide> sides{ExitSide::Nearest};
+    if (!inner_layers && !colliders.empty()) sides.insert(sides.end(), {ExitSide::Front, ExitSide::Back});
+    Deformable start = deformable;
     Untangled best;
     double reported = 0;
     const auto report = [&](double share) { // an attempt that starts again does not go back
         reported = std::max(reported, share);
         if (progress) progress(reported);
     };
-    for (const ExitSide side : {ExitSide::Nearest, ExitSide::Front, ExitSide::Back}) {
-        Untangled found = Attempt(deformable, colliders, options, inner_layers, side).run(report);
-        if (found.tangle_count < best.tangle_count) best = std::move(found);
-        if (best.tangle_count == 0 || colliders.empty()) break;
-    }
+    // A start that has become better is worth another pass, with its shape as the one at rest.
+    std::size_t before = kUnknown;
+    do {
+        before = best.tangle_count;
+        for (const ExitSide side : sides) {
+            Untangled found =
+                Attempt(start, colliders, options, inner_layers.value_or(std::span<const InnerLayer>()), side)
+                    .run(report);
+            if (found.tangle_count < best.tangle_count) best = std::move(found);
+            if (best.tangle_count == 0) break;
+        }
+        start.positions = start.rest_positions = best.positions;
+    } while (best.tangle_count > 0 && best.tangle_count <= before / 2);
     deformable.positions = std::move(best.positions);
     return best.tangle_count == 0;
 }
