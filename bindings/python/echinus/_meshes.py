@@ -568,11 +568,11 @@ def part(
     if not isinstance(meshes, Sequence) or len(meshes) == 0 or len(meshes) > _MOST_LAYERS:
         raise TypeError(f"mesh must be a mesh or a list of 1 to {_MOST_LAYERS} meshes")
     surface = _joined(meshes)
-    layers = np.repeat(np.arange(len(meshes)), [len(as_mesh(layer).vertices) for layer in meshes]) if len(meshes) > 1 else []
+    layers = [i for i, layer in enumerate(meshes) for _ in range(len(as_mesh(layer).vertices))] if len(meshes) > 1 else []
     moved, own_pairs, model_pairs, inside, displacement, stretched_share, largest_stretch = _core.part(
         *arrays_of(surface),
         [arrays_of(model, f"models[{i}]") for i, model in enumerate(models)],
-        (None if thickness is None else number("thickness", thickness), [int(pin) for pin in pins], [int(n) for n in layers]),
+        (None if thickness is None else number("thickness", thickness), [int(pin) for pin in pins], layers),
         threads_of(threads),
     )
     joined = Mesh(*moved)
