@@ -115,10 +115,11 @@ struct PartOptions {
     /// [vertex_count] 1 for vertices that stay where they are, otherwise 0; or empty.
     std::vector<std::uint8_t> pinned = {};
     /// [vertex_count] The layer of each vertex, a larger number farther outside; all vertices of a face are
-    /// in the same one. A layer moves to the outer side of those with smaller numbers, which do not give way,
-    /// and comes from behind any part of them, even if it does not intersect it. The outer side is the one
-    /// that faces away from the closed models on average, or without any, the one to which the normals of the
-    /// faces point. Or empty: layers that intersect then separate to where most of each one already is.
+    /// in the same one. A layer moves to the outer side of those with smaller numbers, out of all that is
+    /// behind them, even if it does not intersect them; they hardly give way. The outer side is the one that
+    /// faces away from the closed models on average, or without any, the one to which the normals of the
+    /// faces point; neighbouring faces have to agree about it. Or empty: layers that intersect then separate
+    /// to where most of each one already is.
     std::vector<std::uint8_t> layers = {};
     unsigned thread_count = 1; ///< as in SimulationOptions; the result does not depend on it
     /// Called with the completed share of the work, 0 to 1, in the thread that called part(). An exception

@@ -109,6 +109,7 @@ bool untangle_layers(const TriangleMesh& surface, const std::vector<Collider>& c
         is_apart = untangle(deformable, colliders, simulation, inside, progress) && is_apart;
         for (std::size_t v = 0; v < layer.vertices.size(); ++v)
             positions[layer.vertices[v]] = deformable.positions[v];
+        if (&layer == &layers.back()) break; // nothing is outside of it
         layer.mesh.vertices = deformable.positions;
         turn_outward(layer.mesh, colliders);
         inner.push_back(with_name("layer " + std::to_string(inner.size()),

@@ -65,6 +65,19 @@ TEST_F(PartCommand, BringsSeveralMeshesIntoTheirOrderAndKeepsWhatElseTheirFilesH
               read_mesh(path("parted/inner.obj")).vertices[112].z);
 }
 
+TEST_F(PartCommand, WarnsOfPolygonsThatItHasToDivideOnlyWhereAnObjCouldHaveKeptThem) {
+    const ProgramResult as_ply = run({"part", "sheet.obj", "--model", "ball.obj", "-o", "parted.ply"});
+    EXPECT_EQ(as_ply.exit_status, 0) << as_ply.error;
+    EXPECT_EQ(as_ply.error.find("polygons"), std::string::npos) << as_ply.error;
+    const std::string pentagon =
+        "v -1 -1 0.02\nv 1 -1 0\nv 1.5 0.5 0\nv 0 -0.4 0.02\nv -1.5 0.5 0\nf 1 2 3 4 5\n";
+    write("pentagon.obj", pentagon);
+    const ProgramResult as_obj =
+        run({"part", "pentagon.obj", "--model", "ball.obj", "-o", "parted.obj", "--best"});
+    EXPECT_EQ(as_obj.exit_status, 0) << as_obj.error;
+    EXPECT_EQ(read_mesh(path("parted.obj")).faces, read_mesh(path("pentagon.obj")).faces) << as_obj.error;
+}
+
 TEST_F(PartCommand, FailsForWhatCannotBePartedUnlessTheBestIsWanted) {
     write("bottle.obj", obj_text(klein_bottle()));
     expect_failure(1, "bottle.obj could not be parted: ", {"part", "bottle.obj", "-o", "parted.obj"});

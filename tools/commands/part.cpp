@@ -2,6 +2,7 @@
 #include "commands/descriptions.hpp"
 #include "console/progress.hpp"
 #include "input_file.hpp"
+#include "mesh_io/mesh_source.hpp"
 #include "mesh_io/write_mesh.hpp"
 #include "output.hpp"
 #include "run_program.hpp"
@@ -198,6 +199,10 @@ TriangleMesh read_model(const MeshArgument& argument, const Vec3d& origin) {
     return model;
 }
 
+bool is_obj(const fs::path& path) {
+    return lower_case_ending(path) == ".obj";
+}
+
 void write_results(const PartArguments& arguments, const JoinedMeshes& meshes,
                    std::span<const Vec3f> vertices, std::optional<OutputFolder>& folder) {
     for (std::size_t i = 0; i < arguments.meshes.size(); ++i) {
@@ -208,7 +213,7 @@ void write_results(const PartArguments& arguments, const JoinedMeshes& meshes,
             print(encode_obj(mesh));
         else if (original == kStandardStream)
             write_mesh(target, mesh);
-        else if (!write_moved_mesh(target, mesh, original))
+        else if (!write_moved_mesh(target, mesh, original) && is_obj(original) && is_obj(target))
             warn(arguments.mesh(i).name() +
                  " has polygons whose division into triangles depends on their shape, so "
                  "that triangles were written, without texture coordinates and groups");
