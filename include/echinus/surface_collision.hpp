@@ -153,7 +153,7 @@ struct Parted {
 /// result has the fewest intersections found. A surface that neither intersects anything nor is inside a
 /// model, with its layers in order, is returned as it is.
 ///
-/// The cost is that of untangling, up to a minute for 10 000 vertices on a detailed model, and of up to
+/// The cost is that of untangling, minutes for 10 000 vertices on a detailed model, and of up to
 /// thirty frames of a simulation. The function may be called in several threads at once.
 /// A pinned vertex inside a model cannot be parted, and what it holds is stretched in vain.
 /// @param models  open or closed meshes; those in other frames are moved to that of the surface, where their

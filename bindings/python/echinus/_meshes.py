@@ -535,7 +535,7 @@ def part(
     """Moves a surface such as a garment, with little stretch, out of models and its layers out of each other.
 
     If it cannot be parted, for instance because it is knotted or the models leave no room, the result has the fewest
-    intersections found. It may take up to a minute for 10 000 vertices on a detailed model.
+    intersections found. It may take minutes for 10 000 vertices on a detailed model.
 
     Parameters
     ----------

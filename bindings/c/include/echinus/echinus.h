@@ -296,8 +296,8 @@ typedef struct echinus_part_report {
 
 /// Makes a copy of a surface such as a garment that is moved, with little stretch, out of models, out of
 /// itself, and its layers into their order. Whatever could not be parted is counted in the report, and found
-/// by echinus_mesh_intersecting_pairs() and echinus_mesh_self_intersecting_pairs(). It may take up to a
-/// minute for 10 000 vertices on a detailed model.
+/// by echinus_mesh_intersecting_pairs() and echinus_mesh_self_intersecting_pairs(). It may take
+/// minutes for 10 000 vertices on a detailed model.
 /// @param models        [model_count] open or closed, in any frame; an open one has no inside
 /// @param pinned        [vertex_count] 1 for vertices that stay where they are, otherwise 0; or NULL
 /// @param layers        [vertex_count] the layer of each vertex, a larger number farther outside; all
